@@ -1,0 +1,14 @@
+"""inetlib: discrete isogonal nets with similar parallelograms.
+
+A net is two plain arrays: vertices `V` (n, 3) float64 and quads `Q` (f, 4) int64,
+counter-clockwise with v1 at the top left (see `inetlib.mesh`).  Angles are radians.
+
+Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
+"""
+
+from importlib.metadata import version
+
+from . import conformal, measure, mesh, parallelogram
+
+__all__ = ["conformal", "measure", "mesh", "parallelogram"]
+__version__ = version("inetlib")

@@ -1,0 +1,196 @@
+"""Sheared grids in the complex plane and their conformal images.
+
+Points of the plane are complex numbers; a grid is a complex array z (m+1, n+1) with u along
+the first axis and v along the second.
+
+Paper: Sec. 3.3, App. A.2.
+"""
+
+import numpy as np
+
+from . import mesh, parallelogram
+
+
+def shear(z, theta0):
+    """The shear x + iy -> x + y cot(theta0) + iy, which tilts vertical lines to theta0.
+
+    z: complex number or array; theta0: radians in (0, pi).
+
+    Paper: Sec. 3.3 (shear).
+    """
+    parallelogram.ratios(theta0, theta0)  # raises for an angle out of range
+    return z + np.imag(z) / np.tan(theta0)
+
+
+def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1):
+    """A planar grid of congruent parallelograms, complex (m+1, n+1).
+
+    Its lines meet at theta0 and the diagonals of its cells at theta, so its mid-edge
+    parallelograms are (theta, theta0)-parallelograms.  z[i, j] = origin + i u + j v with
+    |u| = edge along `direction` (a complex number, its length ignored) and
+    v = u exp(i theta0) / mu: the slanted edge is 1/mu times the other one.
+
+    Paper: Sec. 3.3, App. A.2.
+    """
+    lam, mu = parallelogram.ratios(theta, theta0)
+    if m < 1 or n < 1:
+        raise ValueError(f"m = {m}, n = {n}: a grid needs at least one quad each way")
+    if not (np.isfinite(edge) and edge > 0):
+        raise ValueError(f"edge = {edge}: a positive length is wanted")
+    if not (np.isfinite(direction) and abs(direction) > 0):
+        raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
+    u = edge * direction / abs(direction)
+    v = u * parallelogram.rho(lam, mu)
+    return origin + u * np.arange(m + 1)[:, None] + v * np.arange(n + 1)[None, :]
+
+
+def quads(z):
+    """A grid as a mesh (V, Q) in the plane z = 0; see `mesh.grid_quads` for the numbering.
+
+    z: complex (m+1, n+1), finite.
+
+    Paper: Sec. 3.3.
+    """
+    z = np.asarray(z, dtype=complex)
+    if z.ndim != 2 or min(z.shape) < 2:
+        raise ValueError(f"z has the shape {z.shape}: a grid of at least 2 x 2 points is wanted")
+    V = np.stack([z.real.ravel(), z.imag.ravel(), np.zeros(z.size)], axis=1)
+    if not np.isfinite(V).all():
+        bad = np.unravel_index(np.argmin(np.isfinite(z).ravel()), z.shape)
+        raise ValueError(
+            f"grid point {tuple(map(int, bad))} is not finite: is it a pole of the map?"
+        )
+    return V, mesh.grid_quads(z.shape[0] - 1, z.shape[1] - 1)
+
+
+def complex_ratios(z):
+    """(K, R) of every cell of a grid: K = d2 / d1 and R = m24 / m13, complex (m, n).
+
+    An isogonal net has the constants K = lam exp(i theta) and R = exp(i theta0) / mu.
+
+    Paper: Eq. (11), Eq. (12) in complex form (beyond the paper).
+    """
+    v1, v2, v3, v4 = z[:-1, 1:], z[:-1, :-1], z[1:, :-1], z[1:, 1:]
+    d1, d2 = v3 - v1, v4 - v2
+    return d2 / d1, (d2 - d1) / (d1 + d2)
+
+
+# --- exact images of straight lines -------------------------------------------------------
+
+
+def inversion_circle(point, direction):
+    """Centre (complex) and radius of the circle onto which 1/z takes a line.
+
+    The line runs through `point` along `direction`; ValueError when it meets 0, because
+    its image is then a line.
+
+    Paper: App. A.2 (1/z).
+    """
+    foot = point - direction * np.real(point / direction)  # the line's point nearest to 0
+    if abs(foot) <= 1e-14 * max(abs(point), np.finfo(float).tiny):
+        raise ValueError("the line passes through 0: 1/z takes it to a line, not to a circle")
+    return 1 / (2 * foot), 1 / (2 * abs(foot))
+
+
+def square_conic(point, direction):
+    """Coefficients (A, B, C, D, E, F) of the parabola onto which z^2 takes a line.
+
+    A u^2 + B u v + C v^2 + D u + E v + F = 0 in w = u + iv; numbers or sympy symbols (real
+    and imaginary parts are then taken by `as_real_imag`).  B^2 = 4 A C always: for a line
+    through 0 it is a doubled ray.
+
+    Paper: App. A.2 (z^2).
+    """
+    (a, b), (c, d) = _parts(direction), _parts(point)
+    s, t = a * a - b * b, 2 * a * b  # direction^2: the axis of the parabola
+    h = a * d - b * c  # the line is Im(conj(direction) z) = h
+    # In z' = conj(direction) z = x + ih, z'^2 = x^2 - h^2 + 2ihx, so V^2 = 4 h^2 (U + h^2)
+    # for U + iV = conj(direction)^2 w = (s u + t v) + i (s v - t u).
+    return t * t, -2 * s * t, s * s, -4 * h**2 * s, -4 * h**2 * t, -4 * h**4
+
+
+def _parts(z):
+    return z.as_real_imag() if hasattr(z, "as_real_imag") else (np.real(z), np.imag(z))
+
+
+def square_bezier(start, end):
+    """The image of a segment under z^2 as the three control points of a quadratic Bezier curve.
+
+    start, end: complex numbers or arrays.  Exact: ((1-t) s + t e)^2 is a quadratic in t.
+
+    Paper: App. A.2 (z^2), Fig. 3.
+    """
+    return start**2, start * end, end**2
+
+
+def inversion_bezier(start, end):
+    """The image of a segment under 1/z as a rational quadratic Bezier curve.
+
+    Returns (control points (3,) complex, weights (3,)).  Exact: 1/z(t) is
+    conj(z(t)) / |z(t)|^2, a quotient of polynomials of degree at most 2.
+
+    Paper: App. A.2 (1/z), Fig. 3.
+    """
+    weights = np.array([abs(start) ** 2, np.real(start * np.conj(end)), abs(end) ** 2])
+    points = np.conj(np.array([start, (start + end) / 2, end]))
+    return points / weights, weights
+
+
+def image_lines(f, z, samples=33):
+    """The two families of grid lines under a map, as finely sampled complex polylines.
+
+    f: a function of a complex array.  Returns (u_lines, v_lines), arrays
+    (n+1, m (samples-1) + 1) and (m+1, n (samples-1) + 1): each straight edge of the grid is
+    sampled at `samples` points before it is mapped.
+
+    Paper: Fig. 3.
+    """
+    return f(_refine(z, samples).T), f(_refine(z.T, samples).T)
+
+
+def _refine(z, samples):
+    t = np.arange((z.shape[0] - 1) * (samples - 1) + 1) / (samples - 1)
+    low = np.minimum(t.astype(int), z.shape[0] - 2)
+    part = (t - low)[:, None]
+    return (1 - part) * z[low] + part * z[low + 1]
+
+
+# --- Moebius transformations of the plane -------------------------------------------------
+
+
+def moebius(M, z):
+    """(a z + b) / (c z + d) for the matrix M = [[a, b], [c, d]] and points z.
+
+    Products of matrices are compositions, `numpy.linalg.inv` the inverse map.  ValueError
+    when det M = 0 or when a point lies on the pole -d/c.
+
+    Paper: Sec. 3.3 (remark).
+    """
+    M = np.asarray(M, dtype=complex)
+    if M.shape != (2, 2) or not np.isfinite(M).all():
+        raise ValueError("M must be a 2 x 2 matrix of finite complex numbers")
+    (a, b), (c, d) = M
+    if abs(a * d - b * c) <= 1e-14 * (abs(a * d) + abs(b * c)):
+        raise ValueError("det M = 0: the map takes everything to one point")
+    z = np.asarray(z, dtype=complex)
+    denominator = c * z + d
+    pole = np.abs(denominator) <= 1e-14 * (np.abs(c * z) + abs(d))
+    if pole.any():
+        bad = [int(k) for k in np.unravel_index(np.argmax(pole), pole.shape)]
+        raise ValueError(f"point {bad} lies on the pole {-d / c:.6g} of the map")
+    return (a * z + b) / denominator
+
+
+def moebius_through(z, w):
+    """The matrix of the Moebius transformation with z[k] -> w[k] for three distinct points.
+
+    Paper: Sec. 3.3 (remark).
+    """
+    return np.linalg.inv(_to_zero_one_infinity(w)) @ _to_zero_one_infinity(z)
+
+
+def _to_zero_one_infinity(p):
+    p0, p1, p2 = np.asarray(p, dtype=complex)
+    if p0 == p1 or p1 == p2 or p2 == p0:
+        raise ValueError(f"three distinct points are wanted, not {p0}, {p1}, {p2}")
+    return np.array([[p1 - p2, -p0 * (p1 - p2)], [p1 - p0, -p2 * (p1 - p0)]])

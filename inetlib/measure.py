@@ -1,0 +1,182 @@
+"""The independent judge: ratios, angles and quality of a quad mesh, face by face.
+
+V (n, 3) and Q (f, 4) as in `mesh`; every result has one entry a face.  Nothing here knows
+how a net was made or what it was made for.
+
+Paper: Sec. 4.1, Thm 11, Thm 12.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from . import mesh
+
+
+class WebAngles(NamedTuple):
+    """The six angles between d1, d2, m13 and m24, radians in (0, pi), each of shape (f,)."""
+
+    d1_d2: np.ndarray
+    m13_m24: np.ndarray
+    m13_d2: np.ndarray
+    m13_d1: np.ndarray
+    m24_d2: np.ndarray
+    m24_d1: np.ndarray
+
+
+class Spread(NamedTuple):
+    """Mean, extremes, and the largest and mean absolute deviation from a target."""
+
+    mean: float
+    low: float
+    high: float
+    max_deviation: float
+    mean_deviation: float
+
+
+class Quality(NamedTuple):
+    """Shape of the faces: `flips` counts those of `flipped`; see `quality`."""
+
+    flips: int
+    flipped: np.ndarray
+    area_ratio: float
+    aspect: float
+    planarity: float
+
+
+def vectors(V, Q):
+    """The diagonals and medial lines (d1, d2, m13, m24) of all faces, each (f, 3).
+
+    d1 = v3 - v1, d2 = v4 - v2, m13 = (d1 + d2) / 2, m24 = (d2 - d1) / 2.
+
+    Paper: Thm 11, Fig. 4, Fig. 5.
+    """
+    V, Q = mesh.check_arrays(V, Q)
+    d1 = V[Q[:, 2]] - V[Q[:, 0]]
+    d2 = V[Q[:, 3]] - V[Q[:, 1]]
+    return d1, d2, (d1 + d2) / 2, (d2 - d1) / 2
+
+
+def _length(a, what):
+    length = np.sqrt(np.einsum("ij,ij->i", a, a))
+    if not length.all():
+        raise ValueError(
+            f"face {np.argmin(length)} has {what} of length zero: no ratio or angle there"
+        )
+    return length
+
+
+def _cross(a, b):
+    (a0, a1, a2), (b0, b1, b2) = a.T, b.T
+    return np.stack([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0], axis=1)
+
+
+def _angle(a, b):
+    cross = _cross(a, b)
+    return np.arctan2(np.sqrt(np.einsum("ij,ij->i", cross, cross)), np.einsum("ij,ij->i", a, b))
+
+
+def ratios(V, Q):
+    """(lam, mu) = (|d2| / |d1|, |m13| / |m24|) of every face; ValueError where one collapses.
+
+    Paper: Eq. (11), Eq. (12), Prop. 4.
+    """
+    d1, d2, m13, m24 = vectors(V, Q)
+    lam = _length(d2, "a diagonal") / _length(d1, "a diagonal")
+    return lam, _length(m13, "a medial line") / _length(m24, "a medial line")
+
+
+def angles(V, Q):
+    """(theta, theta0) of every face, radians: angle(d1, d2) and angle(m13, m24).
+
+    Faces that collapse to a line give 0 or pi; a diagonal or medial line of length zero is
+    a ValueError.
+
+    Paper: Def. 3, Prop. 13.
+    """
+    d1, d2, m13, m24 = vectors(V, Q)
+    _require_lengths(d1, d2, m13, m24)
+    return _angle(d1, d2), _angle(m13, m24)
+
+
+def web_angles(V, Q):
+    """All six angles between the four directions of the web, as `WebAngles`.
+
+    d1_d2 is theta, m13_m24 theta0, m13_d2 alpha, m13_d1 beta; in a planar parallelogram
+    m24_d2 = theta0 - alpha and m24_d1 = theta0 + beta.
+
+    Paper: Eq. (5), Thm 12.
+    """
+    d1, d2, m13, m24 = vectors(V, Q)
+    _require_lengths(d1, d2, m13, m24)
+    pairs = [(d1, d2), (m13, m24), (m13, d2), (m13, d1), (m24, d2), (m24, d1)]
+    return WebAngles(*(_angle(a, b) for a, b in pairs))
+
+
+def _require_lengths(d1, d2, m13, m24):
+    for diagonal in (d1, d2):
+        _length(diagonal, "a diagonal")
+    for medial in (m13, m24):
+        _length(medial, "a medial line")
+
+
+def theta_defect(V, Q):
+    """How far each face is from a theta-quad: (d2^2 - d1^2 - 2 d1 . d2) / (d1^2 + d2^2).
+
+    Zero exactly where theta = theta0, that is lam = mu; free of scale.
+
+    Paper: Eq. (13), Def. 5, Prop. 6.
+    """
+    d1, d2, _, _ = vectors(V, Q)
+    one, two = (np.einsum("ij,ij->i", d, d) for d in (d1, d2))
+    _length(d1, "a diagonal"), _length(d2, "a diagonal")
+    return (two - one - 2 * np.einsum("ij,ij->i", d1, d2)) / (one + two)
+
+
+def spread(values, target=None):
+    """`Spread` of an array; deviations are from `target`, or from the mean when it is None.
+
+    Paper: Table 1 (what it leaves out).
+    """
+    values = np.asarray(values, dtype=float)
+    if values.size == 0 or not np.isfinite(values).all():
+        raise ValueError("spread needs at least one value, all of them finite")
+    mean = float(values.mean())
+    off = np.abs(values - (mean if target is None else target))
+    return Spread(
+        mean, float(values.min()), float(values.max()), float(off.max()), float(off.mean())
+    )
+
+
+def quality(V, Q):
+    """`Quality` of a mesh: flipped faces, size, aspect and planarity.
+
+    flipped     faces whose normal d1 x d2 points against the mean normal of their edge
+                neighbours (int64 array), flips their number
+    area_ratio  smallest / largest area of a face, area = |d1 x d2| / 2
+    aspect      the largest ratio of the longer to the shorter medial line
+    planarity   the largest distance between the diagonals over their mean length
+                (0 for planar faces)
+
+    Paper: Sec. 6 (quality; beyond the paper).
+    """
+    d1, d2, m13, m24 = vectors(V, Q)
+    normal = _cross(d1, d2)
+    twice_area = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+    if not twice_area.all():
+        raise ValueError(f"face {np.argmin(twice_area)} has no area: its diagonals are parallel")
+    normal /= twice_area[:, None]
+    neighbours = mesh.face_neighbours(Q)
+    around = np.where(neighbours[:, :, None] >= 0, normal[neighbours], 0).sum(axis=1)
+    flipped = np.flatnonzero(np.einsum("ij,ij->i", normal, around) < 0)
+    one, two = _length(m13, "a medial line"), _length(m24, "a medial line")
+    V, Q = np.asarray(V, dtype=float), np.asarray(Q)
+    apart = np.abs(np.einsum("ij,ij->i", V[Q[:, 1]] - V[Q[:, 0]], normal))
+    size = (_length(d1, "a diagonal") + _length(d2, "a diagonal")) / 2
+    return Quality(
+        flips=len(flipped),
+        flipped=flipped,
+        area_ratio=float(twice_area.min() / twice_area.max()),
+        aspect=float(np.maximum(one / two, two / one).max()),
+        planarity=float((apart / size).max()),
+    )
