@@ -22,7 +22,7 @@ def shear(z, theta0):
     return z + np.imag(z) / np.tan(theta0)
 
 
-def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1):
+def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     """A planar grid of congruent parallelograms, complex (m+1, n+1).
 
     Its lines meet at theta0 and the diagonals of its cells at theta, so its mid-edge
@@ -30,7 +30,11 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1):
     |u| = edge along `direction` (a complex number, its length ignored) and
     v = u exp(i theta0) / mu: the slanted edge is 1/mu times the other one.
 
-    Paper: Sec. 3.3, App. A.2.
+    kappa is f'''/f' of the map f that is to follow, where that is constant: 0 (default) for
+    z and z^2, 1 for exp, -1 for sin and cos, c^2 for exp(cz).  The image of the grid then
+    has both angles exactly, at any size of the cells; the grid itself up to O(edge^2).
+
+    Paper: Sec. 3.3, App. A.2 (kappa: beyond the paper).
     """
     lam, mu = parallelogram.ratios(theta, theta0)
     if m < 1 or n < 1:
@@ -40,7 +44,9 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1):
     if not (np.isfinite(direction) and abs(direction) > 0):
         raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
     u = edge * direction / abs(direction)
-    v = u * parallelogram.rho(lam, mu)
+    rho = parallelogram.rho(lam, mu)
+    half = np.sqrt(complex(kappa)) / 2
+    v = np.arctanh(rho * np.tanh(half * u)) / half if kappa else rho * u
     return origin + u * np.arange(m + 1)[:, None] + v * np.arange(n + 1)[None, :]
 
 

@@ -33,7 +33,7 @@ class Checkerboard(NamedTuple):
 
 
 class Families(NamedTuple):
-    """Four families of curves, each a list of vertex index arrays (closed ones repeat the first)."""
+    """Four families of curves: lists of vertex index arrays, closed ones repeat the first."""
 
     u: list
     v: list
@@ -346,7 +346,7 @@ def _chains(edges):
 
 
 def _fans(Q):
-    """For every interior vertex, its outgoing half-edges counter-clockwise: {valence: (k, valence)}."""
+    """The outgoing half-edges of interior vertices, counter-clockwise: {valence: (k, valence)}."""
     twin = twins(Q)
     turn = twin[np.arange(twin.size).reshape(-1, 4)[:, [3, 0, 1, 2]].ravel()]
     valence = np.bincount(Q.ravel())

@@ -55,7 +55,7 @@ def _root_area(lam, mu):
     xp = _lib(lam, mu)
     if xp is np:  # root by root: the product overflows first
         return np.sqrt(w1) * np.sqrt(w2) * np.sqrt(w3) * np.sqrt(w4)
-    return xp.sqrt(w1 * w2 * w3 * w4)
+    return xp.sqrt(xp.expand(w1 * w2 * w3 * w4))
 
 
 def lam_range(mu):

@@ -1,0 +1,147 @@
+"""Writing a figure: SVG and PNG with stable bytes, and its entry in the manifest.
+
+A drawing (see `inetlib.drawings`) is a `Drawing`; `save` writes it and `figures/manifest.json`
+remembers the function, its parameters, a hash of the data drawn and the numbers claimed.
+
+Paper: Figs. 1-13.
+"""
+
+import hashlib
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from . import measure
+
+DIGITS = 6  # of the data in the hash; angles are reported to 1e-9 degrees
+
+
+class Drawing(NamedTuple):
+    """A finished figure and what stands behind it.
+
+    name        file stem, as fig03
+    figure      the matplotlib figure
+    function    the function that drew it, as a dotted name
+    parameters  {name: number}, what the function was called with
+    data        {name: array}, the geometry drawn
+    nets        (V, Q, theta, theta0) of each net shown, its angles in radians
+    claims      {name: number or text}, what the figure states
+    """
+
+    name: str
+    figure: object
+    function: str
+    parameters: dict
+    data: dict
+    nets: list
+    claims: dict
+
+
+def digest(data):
+    """SHA-256 of arrays rounded to 1e-6, names and shapes included; -0 counts as 0.
+
+    data: {name: array of numbers, real or complex}.
+
+    Paper: Figs. 1-13 (manifest).
+    """
+    total = hashlib.sha256()
+    for name in sorted(data):
+        array = np.asarray(data[name])
+        if np.iscomplexobj(array):
+            array = np.stack([array.real, array.imag], axis=-1)
+        rounded = np.round(array.astype(np.float64), DIGITS) + 0.0
+        total.update(f"{name}{rounded.shape}".encode())
+        total.update(np.ascontiguousarray(rounded, dtype="<f8").tobytes())
+    return total.hexdigest()
+
+
+def deviations(nets):
+    """Largest deviation of theta and theta0, degrees, over all faces of all nets.
+
+    nets: (V, Q, theta, theta0) tuples, angles in radians.  (nan, nan) without nets.
+
+    Paper: Figs. 1-13 (manifest).
+    """
+    if not nets:
+        return np.nan, np.nan
+    off = [
+        [
+            measure.spread(a, b).max_deviation
+            for a, b in zip(measure.angles(V, Q), asked, strict=True)
+        ]
+        for V, Q, *asked in nets
+    ]
+    return tuple(float(x) for x in np.degrees(np.max(off, axis=0)))
+
+
+def save(drawing, folder):
+    """Write folder/NAME.svg, folder/NAME.png and the figure's entry in folder/manifest.json.
+
+    Each file is written under a temporary name and then renamed; `folder` is made when only
+    its last part is missing.  Returns the manifest's entry.
+
+    Paper: Figs. 1-13.
+    """
+    folder = Path(folder)
+    folder.mkdir(exist_ok=True)
+    for kind, metadata in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
+        with _replacing(folder / f"{drawing.name}.{kind}") as temporary:
+            drawing.figure.savefig(temporary, format=kind, metadata=metadata)
+    theta_off, theta0_off = deviations(drawing.nets)
+    entry = {
+        "function": drawing.function,
+        "parameters": drawing.parameters,
+        "sha256": digest(drawing.data),
+        "max_deviation_theta_deg": _rounded(theta_off),
+        "max_deviation_theta0_deg": _rounded(theta0_off),
+        "claims": drawing.claims,
+    }
+    manifest = read_manifest(folder)
+    manifest[drawing.name] = entry
+    with _replacing(folder / "manifest.json") as temporary:
+        text = json.dumps(dict(sorted(manifest.items())), indent=2)
+        Path(temporary).write_text(text + "\n", encoding="utf-8")
+    return entry
+
+
+def read_manifest(folder):
+    """The manifest of a folder as a dict, empty when there is none yet.
+
+    Paper: Figs. 1-13 (manifest).
+    """
+    path = Path(folder) / "manifest.json"
+    if not path.exists():
+        return {}
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise ValueError(
+            f"{path} is not valid JSON: delete it and make the figures again"
+        ) from error
+
+
+def _rounded(degrees):
+    return None if np.isnan(degrees) else round(degrees, 9) + 0.0
+
+
+class _replacing:
+    """A temporary name beside `path`, renamed onto it when the block ends well."""
+
+    def __init__(self, path):
+        self.path = path
+
+    def __enter__(self):
+        handle, self.temporary = tempfile.mkstemp(dir=self.path.parent, prefix=".new-")
+        os.close(handle)
+        return self.temporary
+
+    def __exit__(self, kind, error, trace):
+        if kind is None:
+            os.chmod(self.temporary, 0o644)
+            os.replace(self.temporary, self.path)
+        else:
+            os.unlink(self.temporary)

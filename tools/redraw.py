@@ -1,0 +1,114 @@
+"""Run the notebooks from first to last cell, store their outputs, and redraw every figure.
+
+    python tools/redraw.py              all notebooks
+    python tools/redraw.py 3_1 4        those whose names start so
+
+A notebook is stored only when it ran to its end and something changed.  The table at the end
+shows, for each figure, the largest deviation of theta and theta0 over all faces it shows.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError, DeadKernelError
+from tqdm import tqdm
+
+from inetlib import publish
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def main(arguments=None):
+    """Exit code 0 when every notebook ran to its end."""
+    parser = argparse.ArgumentParser(description="Run the notebooks and redraw the figures.")
+    parser.add_argument("names", nargs="*", help="beginnings of notebook names; none: all")
+    paths = chosen(parser.parse_args(arguments).names)
+    if not paths:
+        print("redraw: no notebook of that name in notebooks/", file=sys.stderr)
+        return 2
+    notebooks = {path: nbformat.read(path, as_version=4) for path in paths}
+    total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
+    seconds = {}
+    with tqdm(total=total, unit="cell") as bar:
+        for path, notebook in notebooks.items():
+            bar.set_description(path.stem)
+            try:
+                seconds |= run(notebook, path.parent, bar)
+            except (CellExecutionError, DeadKernelError) as error:
+                bar.close()
+                print(
+                    f"{error}\nredraw: {path.name} stopped; it was left as it was", file=sys.stderr
+                )
+                return 1
+            store(notebook, path)
+    print(table(seconds))
+    return 0
+
+
+def chosen(names):
+    """The notebooks whose names start with one of `names`, or all, in order."""
+    paths = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    return [path for path in paths if not names or path.stem.startswith(tuple(names))]
+
+
+def run(notebook, folder, bar):
+    """Execute in place; return the seconds of each cell that carries a figure's tag."""
+    seconds, started = {}, {}
+
+    def start(cell, cell_index):
+        started[cell_index] = time.perf_counter()
+
+    def done(cell, cell_index, execute_reply):
+        for tag in cell.metadata.get("tags", []):
+            if tag.startswith(("fig", "table", "beyond")):
+                seconds[tag] = time.perf_counter() - started[cell_index]
+        bar.update()
+
+    NotebookClient(
+        notebook,
+        timeout=600,
+        kernel_name="python3",
+        record_timing=False,
+        extra_arguments=["--log-level=40"],
+        resources={"metadata": {"path": str(folder)}},
+        on_cell_execute=start,
+        on_cell_executed=done,
+    ).execute()
+    return seconds
+
+
+def store(notebook, path):
+    """Write the notebook back, without anything that depends on the machine, if it changed."""
+    notebook.metadata = {
+        "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+        "language_info": {"name": "python"},
+    }
+    text = nbformat.writes(notebook) + "\n"
+    if text == path.read_text(encoding="utf-8"):
+        return
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".new-")
+    with os.fdopen(handle, "w", encoding="utf-8") as file:
+        file.write(text)
+    os.chmod(temporary, 0o644)
+    os.replace(temporary, path)
+
+
+def table(seconds):
+    """One line a figure that was drawn: deviations in degrees, seconds."""
+    rows = [f"{'figure':8} {'max |dtheta| deg':>18} {'max |dtheta0| deg':>18} {'seconds':>9}"]
+    for name, entry in publish.read_manifest(ROOT / "figures").items():
+        if name in seconds:
+            off = [entry["max_deviation_theta_deg"], entry["max_deviation_theta0_deg"]]
+            cells = ["-" if x is None else f"{x:.9f}" for x in off]
+            rows.append(f"{name:8} {cells[0]:>18} {cells[1]:>18} {seconds[name]:9.2f}")
+    return "\n".join(rows)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
