@@ -49,7 +49,7 @@ def vectors(V, Q):
 
     d1 = v3 - v1, d2 = v4 - v2, m13 = (d1 + d2) / 2, m24 = (d2 - d1) / 2.
 
-    Paper: Thm 11, Fig. 4, Fig. 5.
+    Paper: Thm 11.
     """
     V, Q = mesh.check_arrays(V, Q)
     d1 = V[Q[:, 2]] - V[Q[:, 0]]
@@ -136,7 +136,7 @@ def theta_defect(V, Q):
 def spread(values, target=None):
     """`Spread` of an array; deviations are from `target`, or from the mean when it is None.
 
-    Paper: Table 1 (what it leaves out).
+    Paper: Sec. 6.3 (statistics; beyond the paper).
     """
     values = np.asarray(values, dtype=float)
     if values.size == 0 or not np.isfinite(values).all():

@@ -66,7 +66,7 @@ def polygon_rings(sides, rings):
     lattices under z^(4/sides), so the faces are nearly square.  For even `sides` the quads
     are labelled consistently; for odd ones no labelling exists (see `label`).
 
-    Paper: Sec. 6.3, Fig. 13 (the mesh).
+    Paper: Sec. 6.3 (the mesh with a singular face).
     """
     if sides < 3 or rings < 1:
         raise ValueError(f"sides = {sides}, rings = {rings}: needs sides >= 3 and rings >= 1")
@@ -225,7 +225,7 @@ def is_labelled(Q):
 
     Q: (f, 4), consistently oriented, else ValueError.
 
-    Paper: Sec. 4.1, Eq. (11), Eq. (12) (labels).
+    Paper: Sec. 4.1 (labels).
     """
     twin = twins(Q)
     inner = np.flatnonzero(twin >= 0)

@@ -71,7 +71,7 @@ def plane(points):
 def curves(ax, lines, colour, width=1.1, style="-", **options):
     """Polylines (complex or (k, 2) arrays) as one collection; returns it.
 
-    Paper: Fig. 3 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     lines = [plane(line) for line in lines]
     collection = LineCollection(
@@ -98,7 +98,7 @@ def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, **options):
 def net(ax, V, Q, families=("u", "v"), width=1.1):
     """The named families of mesh curves of a planar net, each in its colour.
 
-    Paper: Figs. 3, 5, 6 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     for name, lines in mesh.polylines(Q)._asdict().items():
         if name in families:
@@ -108,7 +108,7 @@ def net(ax, V, Q, families=("u", "v"), width=1.1):
 def black_quads(ax, V, Q, fill=FILL, edge=INK, width=0.4):
     """The inscribed parallelograms of a planar net.
 
-    Paper: Fig. 3, Fig. 4 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     board = mesh.checkerboard(V, Q)
     polygons(ax, board.V, board.black, fill, edge, width)
@@ -120,7 +120,7 @@ def arc(apex, a, b, radius, samples=40):
     apex, a, b: vectors of two or three coordinates, a and b not parallel.  A right angle is
     drawn as a corner (3 points).
 
-    Paper: Figs. 1, 2, 4 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     apex, a, b = (np.asarray(x, dtype=float) for x in (apex, a, b))
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
@@ -137,7 +137,7 @@ def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45, s
 
     In space (three coordinates) `camera` projects it.
 
-    Paper: Figs. 1, 2, 4 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     points = arc(apex, a, b, radius)
     middle = np.asarray(apex) + gap * (points[len(points) // 2] - apex)
@@ -151,7 +151,7 @@ def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45, s
 def vector(ax, start, end, colour=INK, label="", shift=(0, 0), width=1.6, at=0.5, zorder=4):
     """An arrow between two points of the plane, and a label beside the fraction `at` of it.
 
-    Paper: Figs. 4, 5, 6 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     arrow = {"arrowstyle": "-|>,head_width=0.22,head_length=0.45", "color": colour, "lw": width}
@@ -172,7 +172,7 @@ def camera(azimuth, elevation):
 
     azimuth, elevation: radians, the direction from which the scene is seen; z points up.
 
-    Paper: Figs. 4-13 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     right, up = np.array([-sa, ca, 0]), np.array([-se * ca, -se * sa, ce])
@@ -190,7 +190,7 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
 
     V: (n, 3), faces: (f, 3 or 4) -> RGB (f, 3).
 
-    Paper: Figs. 4-13 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     corners = np.asarray(V)[faces]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
@@ -208,7 +208,7 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     (default `shade`); lines: (points (k, 3), colour, width) triples, cut into segments that
     are sorted with the faces and lifted by the fraction `lift` of the scene's depth.
 
-    Paper: Figs. 4-13 (drawing).
+    Paper: Figs. 1-13 (drawing).
     """
     xy, near = view(V)
     fill = shade(V, faces) if fill is None else fill

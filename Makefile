@@ -1,0 +1,40 @@
+# Every target sets up what it needs: .venv with the pinned packages of constraints.txt.
+PYTHON ?= python3
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+else
+BIN := .venv/bin
+endif
+READY := .venv/ready
+
+.PHONY: help figures test test-fast notebooks lint clean
+
+help:
+	@echo "make figures    run every notebook and redraw figures/"
+	@echo "make test       all tests, every notebook rerun from the first cell"
+	@echo "make test-fast  the tests without the notebooks"
+	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
+	@echo "make lint       ruff: format and lint"
+	@echo "make clean      remove .venv and caches"
+
+$(READY): pyproject.toml constraints.txt tools/setup.py
+	$(PYTHON) tools/setup.py
+
+figures: $(READY)
+	$(BIN)/python tools/redraw.py
+
+test: $(READY)
+	$(BIN)/python -m pytest
+
+test-fast: $(READY)
+	$(BIN)/python -m pytest -m "not notebook"
+
+notebooks: $(READY)
+	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 --ServerApp.root_dir=notebooks
+
+lint: $(READY)
+	$(BIN)/ruff format .
+	$(BIN)/ruff check .
+
+clean:
+	$(PYTHON) tools/setup.py --remove

@@ -1,0 +1,196 @@
+"""One test an erratum: what is printed is false, what ERRATA.md puts in its place is true.
+
+The vectors are made here by hand; only where the statement is about a net does the library
+build one.
+"""
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from inetlib import conformal, measure, mesh, parallelogram
+
+DEG = np.pi / 180
+
+
+def between(a, b):
+    """The angle between two vectors, by the textbook formula."""
+    return np.arccos(a @ b / np.sqrt((a @ a) * (b @ b)))
+
+
+def vectors(lam, theta):
+    """d1 and d2 of unit and lam length at the angle theta."""
+    return np.array([1.0, 0.0]), lam * np.array([np.cos(theta), np.sin(theta)])
+
+
+def test_e1_eq_18_swaps_the_squared_medial_lengths():
+    lam, mu = parallelogram.ratios(60 * DEG, 45 * DEG)
+    c1, c2 = lam**2, mu**2
+    assert (1 + c1) * (c2 - 1) == pytest.approx(2 * np.cos(60 * DEG) * lam * (1 + c2))  # Eq. (20)
+    # Given c1, c2, the angle between d1 and d2 follows from Lq / Lp, by the law of cosines.
+    for lq_over_lp, asked in ((c2, 120), (1 / c2, 60)):
+        cosine = (1 + lam**2) * (1 - lq_over_lp) / (2 * lam * (1 + lq_over_lp))
+        d1, d2 = vectors(lam, np.arccos(cosine))
+        p, q = d1 + d2, d2 - d1
+        assert (q @ q) / (p @ p) == pytest.approx(lq_over_lp)
+        assert between(d1, d2) / DEG == pytest.approx(asked)
+
+
+def test_e2_the_proof_of_thm_7_confuses_angles_and_words():
+    mu, theta0 = 1.4, 1.1
+    x_u, x_v = mu * np.array([1.0, 0.0]), np.array([np.cos(theta0), np.sin(theta0)])
+    y_u, y_v = x_u - x_v, x_u + x_v
+    theta = between(y_u, y_v)
+    cos_theta0 = lambda lam: (1 + mu**2) * (lam**2 - 1) / (2 * mu * (1 + lam**2))  # noqa: E731
+    lam = np.linalg.norm(y_v) / np.linalg.norm(y_u)
+    assert cos_theta0(lam) == pytest.approx(np.cos(theta0))
+    assert cos_theta0(1 / lam) == pytest.approx(-np.cos(theta0))  # lam as printed, |Y_u| / |Y_v|
+
+    def root(angle):
+        return (mu**2 - 1) / np.sqrt((mu**2 + 1) ** 2 - 4 * mu**2 * np.cos(angle) ** 2)
+
+    assert root(theta0) == pytest.approx(np.cos(theta))
+    assert abs(root(theta) - np.cos(theta)) > 1e-3
+    cos_alpha = (mu + np.cos(theta0)) / np.sqrt(mu**2 + 1 + 2 * mu * np.cos(theta0))
+    assert cos_alpha == pytest.approx(np.cos(between(y_v, x_u)))
+    assert abs(cos_alpha - np.cos(between(y_u, x_u))) > 1e-3
+
+
+def test_e3_the_middle_equation_of_prop_6():
+    t = sp.symbols("t", positive=True)
+    d1, d2 = sp.Matrix([1, 0]), sp.Matrix([sp.Rational(1, 2), t])
+    t_value = sp.solve(d2.dot(d2) - d1.dot(d1) - 2 * d1.dot(d2), t)[0]  # Eq. (13)
+    d2 = d2.subs(t, t_value)
+    p, q = d1 + d2, d2 - d1
+    cos_theta = d1.dot(d2) / (d1.norm() * d2.norm())
+    cos_theta0 = p.dot(q) / (p.norm() * q.norm())
+    right = 2 * d1.norm() * d2.norm() * cos_theta
+    assert sp.simplify(p.norm() * q.norm() * cos_theta0 - right) == 0
+    printed = p.norm() * q.norm() / (2 * d1.norm() * d2.norm()) * cos_theta0 - right
+    assert sp.simplify(printed) != 0
+    assert sp.simplify(p.dot(p) - 2 * d2.dot(d2)) == 0
+    assert sp.simplify(q.dot(q) - 2 * d1.dot(d1)) == 0
+
+
+def test_e8_barycentre_and_order_of_the_discrete_derivatives():
+    u, v, h = sp.symbols("u v h")
+    x = sp.exp(u + 2 * v) + sp.sin(u) * v**2  # any smooth coordinate function
+
+    def corner(a, b):
+        return x.subs({u: u + a * h / 2, v: v + b * h / 2}, simultaneous=True)
+
+    v1, v2, v3, v4 = corner(-1, 1), corner(-1, -1), corner(1, -1), corner(1, 1)
+    for discrete, first, second in [
+        ((v3 + v4 - v1 - v2) / 2, sp.diff(x, u), sp.diff(x, u, 2)),
+        ((v1 + v4 - v2 - v3) / 2, sp.diff(x, v), sp.diff(x, v, 2)),
+        (v3 - v1, sp.diff(x, u) - sp.diff(x, v), sp.diff(x, u, 2)),
+        (v4 - v2, sp.diff(x, u) + sp.diff(x, v), sp.diff(x, u, 2)),
+    ]:
+        series = sp.series(discrete / h, h, 0, 3).removeO()
+        assert sp.simplify(series.coeff(h, 0) - first) == 0
+        assert sp.simplify(series.coeff(h, 1)) == 0
+        assert sp.simplify(series.coeff(h, 0) - second) != 0
+    middle = (v1 + v2 + v3 + v4) / 4
+    assert sp.simplify(middle.subs(h, 0) - x) == 0
+    assert sp.simplify((v1 + v2 + v3 + v4).subs(h, 0) - x) != 0
+
+
+def test_e9_prop_4_needs_the_range_4_not_6():
+    V = np.random.default_rng(4).normal(size=(4000, 3))
+    lam, mu = measure.ratios(V, np.arange(4000).reshape(-1, 4))
+    low, high = np.abs(mu - 1) / (mu + 1), (mu + 1) / np.abs(mu - 1)
+    assert np.all((low < lam) & (lam < high))  # (4)
+    eq6 = (mu > 1) & ((mu - 1) / (mu + 1) < lam) & (lam < (mu + 1) / (mu - 1))
+    assert 0.4 < np.mean(eq6) < 0.6
+    line = np.array([[0.0, 0, 0], [1, 0, 0], [3, 0, 0], [5, 0, 0]])  # d1 parallel to d2
+    assert not parallelogram.is_admissible(*(x[0] for x in measure.ratios(line, [[0, 1, 2, 3]])))
+
+
+def test_e10_slope_and_spacing_of_the_sheared_grid():
+    theta, theta0 = 70 * DEG, 50 * DEG
+    slanted = np.diff(conformal.sheared_grid(theta, theta0, 1, 1)[0])[0]
+    assert slanted.imag / slanted.real == pytest.approx(np.tan(theta0))
+    assert abs(slanted.imag / slanted.real - np.tan(theta)) > 0.5  # k as printed
+    lam = np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
+    for h, is_theta_grid in ((np.sin(theta) / lam, True), (lam * np.sin(theta), False)):
+        u, v = np.array([1.0, 0.0]), np.array([h / np.tan(theta), h])
+        d1, d2 = u - v, u + v
+        defect = d2 @ d2 - d1 @ d1 - 2 * d1 @ d2  # Eq. (13)
+        assert (abs(defect) < 1e-12) == is_theta_grid
+    mu = parallelogram.ratios(theta, theta0)[1]
+    assert abs(slanted) == pytest.approx(1 / mu)
+    assert slanted.imag == pytest.approx(np.sin(theta0) / mu)
+
+
+def test_e11_the_captions_of_figs_1_and_2():
+    a, b, p, q = parallelogram.lengths(*parallelogram.ratios(60 * DEG, 60 * DEG))
+    assert np.allclose(np.array([a, b, q]) / np.array([p / 2, q / 2, b]), np.sqrt(2))
+    assert (
+        len({round(x / a, 9) for x in (a, b, q, p / 2, q / 2, b)}) > 1
+    )  # no chain of equal ratios
+    theta, theta0 = 70 * DEG, 55 * DEG
+    lam, mu = parallelogram.ratios(theta, theta0)
+    shown = {"B": (1 / lam, mu), "C": (lam, 1 / mu), "D": (1 / lam, 1 / mu)}
+    stated = {"B": (70, 125), "C": (110, 55), "D": (110, 125)}  # the text of Sec. 3.1
+    for name, pair in shown.items():
+        assert np.allclose(np.array(parallelogram.angles(*pair)) / DEG, stated[name])
+    for name, pair in {"B": (0.5, 0.5), "C": (lam, 1 / lam), "D": (1 / lam, 1 / lam)}.items():
+        assert not np.allclose(np.array(parallelogram.angles(*pair)) / DEG, stated[name], atol=1)
+
+
+def test_e13_images_under_1_over_z_are_similar_only_in_the_limit():
+    off = []
+    for k in (1, 2, 4):
+        z = conformal.sheared_grid(60 * DEG, 60 * DEG, 10 * k, 10 * k, 1 + 1j, 0.1 / k)
+        square = measure.angles(*conformal.quads(z**2))[0]
+        assert np.abs(square / DEG - 60).max() < 1e-10
+        off.append(np.abs(measure.angles(*conformal.quads(1 / z))[0] / DEG - 60).max())
+    assert off[2] > 1e-3
+    assert 3.5 < off[0] / off[1] < 4.5 and 3.5 < off[1] / off[2] < 4.5
+
+
+def test_e14_net_and_diagonals_match_by_a_reflection_not_a_rotation():
+    _, mu = parallelogram.ratios(60 * DEG, 60 * DEG)
+    x_u, x_v = 1 + 0j, np.exp(1j * 60 * DEG) / mu
+    y_u, y_v = x_u - x_v, x_u + x_v
+    # directions: one rotation takes both lines of X to those of Y
+    assert np.angle(y_u / x_u) == pytest.approx(np.angle(y_v / x_v))
+    # lengths: not with the same scale, nor with the lines exchanged
+    assert abs(abs(y_u / x_u) - abs(y_v / x_v)) > 0.1
+    assert min(abs(y_v / x_u - s * y_u / x_v) for s in (1, -1)) > 0.1
+    # a reflection z -> c conj(z) takes X_u to Y_v and X_v to Y_u, lengths and all
+    assert y_v / np.conj(x_u) == pytest.approx(y_u / np.conj(x_v))
+
+
+def test_e17_the_diagonal_parametrisation_and_its_partial_derivatives():
+    u, v, x_u, x_v = sp.symbols("u v x_u x_v")
+
+    def partials(first, second):
+        """Y_u and Y_v for the plane X(u, v) = u X_u + v X_v, the tangent plane of any net."""
+        y = first * x_u + second * x_v
+        return sp.expand(sp.diff(y, u)), sp.expand(sp.diff(y, v))
+
+    assert partials(u - v, u + v) == (x_u + x_v, x_v - x_u)  # as printed
+    assert partials(u + v, v - u) == (x_u - x_v, x_u + x_v)  # what Thms 7 and 8 go on to use
+
+
+def test_e18_the_angles_of_eq_5_lie_between_f_u_and_the_diagonals():
+    V = np.random.default_rng(18).normal(size=(4, 3))
+    d1, d2 = V[2] - V[0], V[3] - V[1]
+    f_u, f_v = (V[2] + V[3] - V[0] - V[1]) / 2, (V[0] + V[3] - V[1] - V[2]) / 2
+    lam = np.linalg.norm(d2) / np.linalg.norm(d1)
+    mu = np.linalg.norm(f_u) / np.linalg.norm(f_v)
+    root = 2 * mu * np.sqrt(2 * (1 + lam**2) * (1 + mu**2))
+    cos_alpha = (3 * lam**2 * mu**2 + lam**2 + mu**2 - 1) / (lam * root)  # Eq. (5)
+    cos_beta = (lam**2 * mu**2 - lam**2 + 3 * mu**2 + 1) / root
+    assert np.arccos(cos_alpha) == pytest.approx(between(f_u, d2))
+    assert np.arccos(cos_beta) == pytest.approx(between(f_u, d1))
+    printed = between(f_v, d1)
+    assert min(abs(abs(np.cos(printed)) - abs(c)) for c in (cos_alpha, cos_beta)) > 1e-2
+
+
+def test_the_labels_start_at_the_top_left():
+    V = np.array([[0, 1, 0], [0, 0, 0], [1, 0, 0], [1.2, 1.3, 0]])
+    lam, mu = measure.ratios(V, [[0, 1, 2, 3]])
+    turned = measure.ratios(V, np.roll([[0, 1, 2, 3]], 1, axis=1))
+    assert np.allclose([lam * turned[0], mu * turned[1]], 1) and mesh.is_labelled([[0, 1, 2, 3]])

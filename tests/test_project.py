@@ -1,0 +1,109 @@
+"""The project's own promises: declared packages, pins, style, nothing private in a file."""
+
+import importlib
+import inspect
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+
+MODULES = ["conformal", "measure", "mesh", "parallelogram", "plot", "publish"] + [
+    f"drawings.{path.stem}" for path in sorted((ROOT / "inetlib/drawings").glob("fig*.py"))
+]
+
+
+def tracked():
+    """The text files that git would commit."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    names = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    paths = [ROOT / name for name in names.splitlines()]
+    return [p for p in paths if p.is_file() and p.suffix not in {".png", ".svg"}]
+
+
+def declared():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"].values()
+    return [Requirement(r) for r in project["dependencies"] + [r for e in extras for r in e]]
+
+
+def public_functions():
+    for name in MODULES:
+        module = importlib.import_module(f"inetlib.{name}")
+        for key, value in vars(module).items():
+            if not key.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+                yield f"{name}.{key}", value
+
+
+def test_environment_yml_is_made_from_pyproject():
+    import environment
+
+    assert (ROOT / "environment.yml").read_text() == environment.environment()
+
+
+def test_every_declared_package_is_pinned_within_its_range():
+    lines = (ROOT / "constraints.txt").read_text().splitlines()
+    pins = dict(line.lower().split("==") for line in lines if line and not line.startswith("#"))
+    assert len(declared()) > 10
+    for requirement in declared():
+        assert pins[requirement.name.lower()] in requirement.specifier, requirement
+
+
+def test_the_package_list_names_every_module_folder():
+    packages = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"][
+        "packages"
+    ]
+    folders = {p.parent.relative_to(ROOT) for p in (ROOT / "inetlib").rglob("*.py")}
+    assert {str(f).replace("/", ".").replace("\\", ".") for f in folders} == set(packages)
+
+
+@pytest.mark.parametrize("command", [["format", "--check"], ["check"]])
+def test_ruff_has_nothing_to_say(command):
+    done = subprocess.run(
+        [sys.executable, "-m", "ruff", *command, "."], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_file_names_a_package_index_or_somebodys_machine():
+    private = re.compile(
+        r"https?://\S*(?:/simple\b|pypi|pythonhosted|registry|anaconda)"
+        r"|(?<![\w.])/(?:work|root|home|Users)/\w|--(?:extra-)?index-url",
+        re.IGNORECASE,
+    )
+    for path in tracked():
+        if path != Path(__file__).resolve():
+            hit = private.search(path.read_text(encoding="utf-8"))
+            assert hit is None, f"{path.name}: {hit[0]}"
+
+
+def test_identifiers_are_ascii():
+    for path in tracked():
+        if path.suffix == ".py":
+            assert path.read_text(encoding="utf-8").isascii(), path
+
+
+def test_every_public_name_has_a_docstring_that_names_its_source():
+    names = list(public_functions())
+    assert len(names) > 40
+    for name, value in names:
+        doc = inspect.getdoc(value)
+        assert doc, name
+        if inspect.isfunction(value):
+            assert doc.splitlines()[-1].startswith("Paper: "), name
+
+
+def test_no_module_and_no_function_outgrows_a_glance():
+    for name, value in public_functions():
+        assert len(inspect.getsource(value).splitlines()) <= 60, name
+
+
+def test_the_library_draws_without_opengl():
+    code = "import sys, inetlib.plot, inetlib.publish; sys.exit('vtk' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0

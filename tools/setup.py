@@ -1,0 +1,40 @@
+"""Make .venv beside this folder and install the project with its tests, at pinned versions.
+
+    python tools/setup.py             make or update .venv
+    python tools/setup.py --remove    remove it
+
+Needs Python >= 3.11 and the network; nothing outside .venv changes.
+"""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+VENV = ROOT / ".venv"
+
+
+def main():
+    """Exit code 0 when .venv is ready; a sentence and 1 when not."""
+    if sys.version_info < (3, 11):
+        return f"Python {sys.version.split()[0]} is too old: 3.11 or newer is needed (PYTHON=...)"
+    if "--remove" in sys.argv[1:]:
+        shutil.rmtree(VENV, ignore_errors=True)
+        return 0
+    python = VENV / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
+    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", VENV]).returncode:
+        shutil.rmtree(VENV, ignore_errors=True)
+        return (
+            "no virtual environment could be made (on Debian and Ubuntu: apt install python3-venv)"
+        )
+    print("installing the packages of constraints.txt into .venv ...", flush=True)
+    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    if subprocess.run([*pip, "-c", "constraints.txt", "-e", ".[test]"], cwd=ROOT).returncode:
+        return "the packages could not be installed: see pip's message above"
+    (VENV / "ready").touch()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
