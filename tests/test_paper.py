@@ -1,0 +1,110 @@
+"""PAPER.md, ERRATA.md, the docstrings, the tests and the notebooks' headings agree."""
+
+import ast
+import inspect
+import re
+from pathlib import Path
+
+import nbformat
+import pytest
+from test_project import public_functions
+
+ROOT = Path(__file__).resolve().parent.parent
+ITEM = re.compile(
+    r"(?:Eq\.|Lemma|Def\.|Prop\.|Thm|Cor\.|Fig\.|Alg\.|Table) \d+|App\. A\.\d|Eq\. \(\d+\)"
+)
+EVERYTHING = (
+    [f"Eq. ({k})" for k in range(1, 23)]
+    + ["Lemma 1", *(f"Def. {k}" for k in (2, 3, 5, 10, 14)), "Prop. 4", "Prop. 6", "Prop. 13"]
+    + [*(f"Thm {k}" for k in (7, 8, 11, 12)), *(f"Cor. {k}" for k in (9, 15, 16, 17, 18))]
+    + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
+    + [f"App. A.{k}" for k in range(1, 5)]
+)
+NOT_YET = 20
+
+
+def rows():
+    """The table of PAPER.md: {item: (functions, tests, notebook, heading)}."""
+    lines = (ROOT / "PAPER.md").read_text(encoding="utf-8").splitlines()
+    cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line[:1] == "|"]
+    table = {}
+    for item, _, functions, tests, notebook, status in cells[2:]:
+        assert item not in table, item
+        assert status == "done", item
+        table[item] = (
+            re.findall(r"`([^`]+)`", functions),
+            re.findall(r"`([^`]+)`", tests),
+            notebook,
+        )
+    return table
+
+
+def not_yet(page):
+    """The items below the heading `## Not yet` of a page."""
+    text = (ROOT / page).read_text(encoding="utf-8").split("## Not yet\n")[1]
+    return [re.sub(r"^- ", "", line) for line in text.splitlines() if line.startswith("- ")]
+
+
+def headings(notebook):
+    cells = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
+    lines = [line for c in cells if c.cell_type == "markdown" for line in c.source.splitlines()]
+    return " ".join(line for line in lines if line.startswith("#"))
+
+
+def tests_of(path):
+    tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
+    return {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
+
+
+def cited(doc):
+    """The numbered items in the last line of a docstring."""
+    return set(ITEM.findall(doc.splitlines()[-1]))
+
+
+def test_every_numbered_item_stands_exactly_once():
+    listed = list(rows()) + not_yet("PAPER.md")
+    assert sorted(listed) == sorted(EVERYTHING)
+
+
+def test_the_rows_not_yet_written_are_counted():
+    assert len(not_yet("PAPER.md")) == NOT_YET
+
+
+@pytest.mark.parametrize("item", rows())
+def test_a_row_names_a_function_a_test_and_a_heading_that_exist(item):
+    functions, tests, notebook = rows()[item]
+    docs = {name: inspect.getdoc(value) for name, value in public_functions()}
+    assert functions and tests
+    for name in functions:
+        assert item in cited(docs[name]), f"{name} does not cite {item}"
+    for name in tests:
+        path, _, test = name.partition("::")
+        assert test in tests_of(f"tests/{path}"), name
+    stem, heading = re.fullmatch(r"\[(\w+)\]\(notebooks/\1\.ipynb\), (.+)", notebook).groups()
+    assert heading == item
+    assert re.search(re.escape(item) + r"(?!\d)", headings(stem)), (
+        f"{stem} has no heading for {item}"
+    )
+
+
+def test_every_docstring_that_cites_an_item_stands_in_its_row():
+    table = rows()
+    for name, value in public_functions():
+        for item in cited(inspect.getdoc(value)):
+            assert name in table[item][0], f"the row of {item} lacks {name}"
+
+
+def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
+    text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
+    done = re.findall(r"^## E(\d+) ", text, re.MULTILINE)
+    found = tests_of("tests/test_errata.py")
+    parts = re.split(r"^## ", text, flags=re.MULTILINE)[1:]
+    for part in parts:
+        if part.startswith("E"):
+            number = re.match(r"E(\d+)", part)[1]
+            assert all(f"- {w}:" in part for w in ("Printed", "Must be", "Why", "Test")), part
+            assert (test := re.search(r"- Test: `(\w+)`", part)[1]) in found
+            assert test.startswith(f"test_e{number}_")
+    later = [m for line in not_yet("ERRATA.md") for m in re.findall(r"^E(\d+)", line)]
+    assert sorted(map(int, done + later)) == list(range(1, 19))
+    assert len(later) == 7
