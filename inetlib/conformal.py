@@ -18,7 +18,7 @@ def shear(z, theta0):
 
     Paper: Sec. 3.3 (shear).
     """
-    parallelogram.ratios(theta0, theta0)  # raises for an angle out of range
+    parallelogram.ratios(np.pi / 2, theta0)  # raises for an angle out of range
     return z + np.imag(z) / np.tan(theta0)
 
 
@@ -37,8 +37,7 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     Paper: Sec. 3.3, App. A.2 (kappa: beyond the paper).
     """
     lam, mu = parallelogram.ratios(theta, theta0)
-    if m < 1 or n < 1:
-        raise ValueError(f"m = {m}, n = {n}: a grid needs at least one quad each way")
+    m, n = mesh._check_counts(m, n)
     if not (np.isfinite(edge) and edge > 0):
         raise ValueError(f"edge = {edge}: a positive length is wanted")
     if not (np.isfinite(direction) and abs(direction) > 0):
@@ -88,14 +87,17 @@ def inversion_circle(point, direction):
     """Centre (complex) and radius of the circle onto which 1/z takes a line.
 
     The line runs through `point` along `direction`; ValueError when it meets 0, because
-    its image is then a line.
+    its image is then a line.  Numbers or sympy symbols, as in `square_conic`.
 
     Paper: App. A.2 (1/z).
     """
-    foot = point - direction * np.real(point / direction)  # the line's point nearest to 0
-    if abs(foot) <= 1e-14 * max(abs(point), np.finfo(float).tiny):
+    (a, b), h = _parts(direction), _moment(point, direction)
+    xp = parallelogram._lib(a, b, h)
+    length = xp.sqrt(a * a + b * b)
+    if xp is np and abs(h) <= 1e-14 * length * abs(point):
         raise ValueError("the line passes through 0: 1/z takes it to a line, not to a circle")
-    return 1 / (2 * foot), 1 / (2 * abs(foot))
+    # The point of the line nearest to 0 is i h / conj(direction): its image ends a diameter.
+    return -(b + a * (1j if xp is np else xp.I)) / (2 * h), length / abs(2 * h)
 
 
 def square_conic(point, direction):
@@ -107,9 +109,8 @@ def square_conic(point, direction):
 
     Paper: App. A.2 (z^2).
     """
-    (a, b), (c, d) = _parts(direction), _parts(point)
+    (a, b), h = _parts(direction), _moment(point, direction)
     s, t = a * a - b * b, 2 * a * b  # direction^2: the axis of the parabola
-    h = a * d - b * c  # the line is Im(conj(direction) z) = h
     # In z' = conj(direction) z = x + ih, z'^2 = x^2 - h^2 + 2ihx, so V^2 = 4 h^2 (U + h^2)
     # for U + iV = conj(direction)^2 w = (s u + t v) + i (s v - t u).
     return t * t, -2 * s * t, s * s, -4 * h**2 * s, -4 * h**2 * t, -4 * h**4
@@ -117,6 +118,12 @@ def square_conic(point, direction):
 
 def _parts(z):
     return z.as_real_imag() if hasattr(z, "as_real_imag") else (np.real(z), np.imag(z))
+
+
+def _moment(point, direction):
+    """h of the line Im(conj(direction) z) = h."""
+    (a, b), (c, d) = _parts(direction), _parts(point)
+    return a * d - b * c
 
 
 def square_bezier(start, end):
@@ -133,11 +140,17 @@ def inversion_bezier(start, end):
     """The image of a segment under 1/z as a rational quadratic Bezier curve.
 
     Returns (control points (3,) complex, weights (3,)).  Exact: 1/z(t) is
-    conj(z(t)) / |z(t)|^2, a quotient of polynomials of degree at most 2.
+    conj(z(t)) / |z(t)|^2, a quotient of polynomials of degree at most 2.  ValueError when a
+    control point would be infinite: an end at 0, or a right angle between start and end.
 
     Paper: App. A.2 (1/z), Fig. 3.
     """
     weights = np.array([abs(start) ** 2, np.real(start * np.conj(end)), abs(end) ** 2])
+    if not np.all(np.abs(weights[1]) > 1e-14 * np.sqrt(weights[0] * weights[2])):
+        raise ValueError(
+            f"the segment from {start} to {end} ends at 0 or is seen from 0 under a right angle: "
+            "a control point of its image lies at infinity, shorten or split the segment"
+        )
     points = np.conj(np.array([start, (start + end) / 2, end]))
     return points / weights, weights
 
@@ -147,10 +160,12 @@ def image_lines(f, z, samples=33):
 
     f: a function of a complex array.  Returns (u_lines, v_lines), arrays
     (n+1, m (samples-1) + 1) and (m+1, n (samples-1) + 1): each straight edge of the grid is
-    sampled at `samples` points before it is mapped.
+    sampled at `samples` points (at least 2) before it is mapped.
 
     Paper: Fig. 3.
     """
+    if samples < 2:
+        raise ValueError(f"samples = {samples}: an edge needs at least its 2 ends")
     return f(_refine(z, samples).T), f(_refine(z.T, samples).T)
 
 
@@ -183,7 +198,7 @@ def moebius(M, z):
     pole = np.abs(denominator) <= 1e-14 * (np.abs(c * z) + abs(d))
     if pole.any():
         bad = [int(k) for k in np.unravel_index(np.argmax(pole), pole.shape)]
-        raise ValueError(f"point {bad} lies on the pole {-d / c:.6g} of the map")
+        raise ValueError(f"point z{bad or ''} lies on the pole {-d / c + 0:.6g} of the map")
     return (a * z + b) / denominator
 
 
@@ -197,6 +212,6 @@ def moebius_through(z, w):
 
 def _to_zero_one_infinity(p):
     p0, p1, p2 = np.asarray(p, dtype=complex)
-    if p0 == p1 or p1 == p2 or p2 == p0:
-        raise ValueError(f"three distinct points are wanted, not {p0}, {p1}, {p2}")
+    if p0 == p1 or p1 == p2 or p2 == p0 or not np.isfinite([p0, p1, p2]).all():
+        raise ValueError(f"three distinct finite points are wanted, not {p0}, {p1}, {p2}")
     return np.array([[p1 - p2, -p0 * (p1 - p2)], [p1 - p0, -p2 * (p1 - p0)]])

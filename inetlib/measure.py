@@ -142,6 +142,8 @@ def spread(values, target=None):
     if values.size == 0 or not np.isfinite(values).all():
         raise ValueError("spread needs at least one value, all of them finite")
     mean = float(values.mean())
+    if target is not None and not np.isfinite(target).all():
+        raise ValueError(f"target = {target}: a finite number is wanted")
     off = np.abs(values - (mean if target is None else target))
     return Spread(
         mean, float(values.min()), float(values.max()), float(off.max()), float(off.mean())

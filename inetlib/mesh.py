@@ -47,15 +47,22 @@ class Families(NamedTuple):
 def grid_quads(m, n):
     """Quads (m n, 4) of a grid of (m+1)(n+1) vertices, vertex (i, j) numbered i (n+1) + j.
 
-    m, n: positive integers, the numbers of quads along u (i) and v (j).
+    m, n: positive integers, the numbers of quads along u (i) and v (j); else ValueError.
 
     Paper: Sec. 4.3.
     """
-    if m < 1 or n < 1:
-        raise ValueError(f"m = {m}, n = {n}: a grid needs at least one quad each way")
+    m, n = _check_counts(m, n)
     i, j = np.meshgrid(np.arange(m), np.arange(n), indexing="ij")
     v2 = (i * (n + 1) + j).ravel()
     return np.stack([v2 + 1, v2, v2 + n + 1, v2 + n + 2], axis=1)
+
+
+def _check_counts(m, n):
+    if not (m >= 1 and n >= 1):
+        raise ValueError(f"m = {m}, n = {n}: a grid needs at least one quad each way")
+    if int(m) != m or int(n) != n:
+        raise ValueError(f"m = {m}, n = {n}: whole numbers of quads are wanted")
+    return int(m), int(n)
 
 
 def polygon_rings(sides, rings):
@@ -110,9 +117,10 @@ def check_arrays(V, Q):
     Paper: Sec. 4.1.
     """
     V, Q = np.asarray(V), _check_quads(Q)
-    if V.ndim != 2 or V.shape[1] != 3 or not np.issubdtype(V.dtype, np.number):
+    if V.ndim != 2 or V.shape[1] != 3 or V.dtype.kind not in "iuf":
         raise ValueError(
-            f"V has the shape {V.shape}: one row of three coordinates a vertex is wanted"
+            f"V has the shape {V.shape} and type {V.dtype}: "
+            "one row of three real coordinates a vertex is wanted"
         )
     V = V.astype(np.float64, copy=False)
     if Q.max() >= len(V):
@@ -280,7 +288,7 @@ def _obstruction(Q, loop):
     """Why no labelling exists, in words: a vertex, a boundary loop, or the given face loop."""
     faces = np.bincount(Q.ravel())
     edge = np.zeros(faces.size, dtype=bool)
-    loops = boundary_loops(Q)
+    loops = sorted(boundary_loops(Q), key=len)  # a hole says more than the outline
     for ring in loops:
         edge[ring] = True
     odd = np.flatnonzero(~edge & (faces % 2 == 1))
@@ -359,6 +367,9 @@ def _fans(Q):
         fan = [start[np.flatnonzero(inner & (valence == k))]]
         for _ in range(k - 1):
             fan.append(turn[fan[-1]])
+            if (again := fan[-1] == fan[0]).any():
+                vertex = Q.ravel()[fan[0][np.argmax(again)]]
+                raise ValueError(f"the faces at vertex {vertex} form two fans: not a manifold")
         fans[int(k)] = np.stack(fan, axis=1)
     return fans
 

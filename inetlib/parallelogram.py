@@ -68,9 +68,10 @@ def lam_range(mu):
     """
     if _lib(mu) is not np:
         return abs(mu - 1) / (mu + 1), (mu + 1) / abs(mu - 1)
-    gap = np.abs(np.asarray(mu, dtype=float) - 1)
+    mu = _require_positive("mu", mu)
+    gap = np.abs(mu - 1)
     with np.errstate(divide="ignore"):
-        return gap / (np.asarray(mu) + 1), (np.asarray(mu) + 1) / gap
+        return gap / (mu + 1), (mu + 1) / gap
 
 
 def is_admissible(lam, mu):
@@ -109,6 +110,16 @@ def _require_admissible(lam, mu):
     return lam[()], mu[()]
 
 
+def _require_positive(name, value):
+    """The value as floats, or ValueError unless 0 < value < inf."""
+    value = np.asarray(value, dtype=float)
+    good = ((value > 0) & np.isfinite(value)).ravel()
+    if not good.all():
+        bad = value.ravel()[np.argmin(good)]
+        raise ValueError(f"{name} = {bad:.6g}: a positive finite number is wanted")
+    return value[()]
+
+
 def _require_angle(name, value):
     """The angle as floats (symbols pass through), or ValueError unless 0 < value < pi."""
     if _lib(value) is not np:
@@ -127,12 +138,15 @@ def _require_angle(name, value):
 def diagonals(a, b, theta):
     """Lengths p = |AC|, q = |BD| of the diagonals, from two sides and the angle between them.
 
-    a, b: positive lengths, theta: radians in (0, pi).  Together p^2 + q^2 = 2 (a^2 + b^2).
+    a, b: positive lengths, theta: radians in (0, pi), else ValueError.  Together
+    p^2 + q^2 = 2 (a^2 + b^2).
 
     Paper: Eq. (1), Eq. (2).
     """
-    theta = _require_angle("theta", theta)
     xp = _lib(a, b, theta)
+    if xp is np:
+        a, b = _require_positive("a", a), _require_positive("b", b)
+    theta = _require_angle("theta", theta)
     half = theta / 2  # a^2 + b^2 - 2ab cos(theta), without the cancellation
     p = xp.sqrt((a - b) ** 2 + 4 * a * b * xp.sin(half) ** 2)
     q = xp.sqrt((a - b) ** 2 + 4 * a * b * xp.cos(half) ** 2)
@@ -248,25 +262,29 @@ def rho(lam, mu):
 def diagonal_ratio(rho):
     """Y_v / Y_u = (1 + rho) / (1 - rho) = lam exp(i theta), for rho = X_v / X_u.
 
-    rho: complex number, array or symbol, not 1.  In terms of s = Y_v / Y_u and r = 1 / rho
-    it is the involution s = (r + 1) / (r - 1), r = (s + 1) / (s - 1).
+    rho: complex number, array or symbol, not 1, else ValueError.  In terms of s = Y_v / Y_u
+    and r = 1 / rho it is the involution s = (r + 1) / (r - 1), r = (s + 1) / (s - 1).
 
     Paper: Sec. 4.2 in complex form (beyond the paper).
     """
+    if _lib(rho) is np:
+        rho = np.asarray(rho, dtype=complex)[()]
+        if np.any(rho == 1):
+            raise ValueError("rho = 1: X_u = X_v, the diagonal Y_u vanishes")
     return (1 + rho) / (1 - rho)
 
 
 def from_rho(rho):
     """`Shape(lam, mu, theta, theta0)` of rho = X_v / X_u in the upper half plane.
 
-    rho: complex number or array with positive imaginary part; else ValueError.
+    rho: finite complex number or array with positive imaginary part; else ValueError.
 
     Paper: Lemma 1 in complex form (beyond the paper).
     """
     rho = np.asarray(rho, dtype=complex)
-    if not np.all(rho.imag > 0):
+    if not np.all((rho.imag > 0) & np.isfinite(rho)):
         raise ValueError(
-            "rho must lie in the upper half plane: its imaginary part is |m24|/|m13| "
+            "rho must be finite and lie in the upper half plane: its imaginary part is |m24|/|m13| "
             "times sin theta0 > 0"
         )
     diagonal = diagonal_ratio(rho[()])

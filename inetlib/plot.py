@@ -117,12 +117,14 @@ def black_quads(ax, V, Q, fill=FILL, edge=INK, width=0.4):
 def arc(apex, a, b, radius, samples=40):
     """Points on the arc around `apex` from the direction a to the direction b, (samples, dim).
 
-    apex, a, b: vectors of two or three coordinates, a and b not parallel.  A right angle is
-    drawn as a corner (3 points).
+    apex, a, b: vectors of two or three coordinates, a and b not parallel, else ValueError.
+    A right angle is drawn as a corner (3 points).
 
     Paper: Figs. 1-13 (drawing).
     """
     apex, a, b = (np.asarray(x, dtype=float) for x in (apex, a, b))
+    if np.linalg.matrix_rank([a, b]) < 2:
+        raise ValueError(f"the directions {a} and {b} are parallel: no arc between them")
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     if abs(a @ b) < 1e-9:
         return apex + 0.7 * radius * np.array([a, a + b, b])
@@ -204,9 +206,10 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
 def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     """A surface and curves on it, painted from the back to the front as vectors.
 
-    view: a `camera`; V: (n, 3); faces: (f, k) index array; fill: colours of the faces
-    (default `shade`); lines: (points (k, 3), colour, width) triples, cut into segments that
-    are sorted with the faces and lifted by the fraction `lift` of the scene's depth.
+    view: a `camera`; V: (n, 3); faces: (f, k) index array; fill: a colour or one colour a
+    face (default `shade`); lines: (points (k, 3), colour, width) triples, cut into segments that
+    are sorted with the faces, in front of those they lie on, and lifted by the fraction
+    `lift` of the scene's depth.
 
     Paper: Figs. 1-13 (drawing).
     """
@@ -215,9 +218,11 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     closed = np.concatenate([faces, faces[:, :1]], axis=1)
     paths = [Path(p) for p in xy[closed]]
     keys = list(near[faces].mean(axis=1))
-    inside = [tuple(c) for c in np.asarray(fill)]
+    rgba = plt.matplotlib.colors.to_rgba_array(fill)
+    inside = [tuple(c) for c in np.broadcast_to(rgba, (len(paths), 4))]
     edges, widths = list(inside), [0.3] * len(paths)
-    lifted = lift * (np.ptp(near) or 1)
+    tilt = near[faces].mean(axis=1) - near[faces].min(axis=1)  # else faces hide half their lines
+    lifted = lift * (np.ptp(near) or 1) + tilt.max()
     for points, colour, width in lines:
         flat, close = view(points)
         paths += [Path(flat[k : k + 2]) for k in range(len(flat) - 1)]

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import tempfile
+from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
@@ -81,16 +82,15 @@ def deviations(nets):
 def save(drawing, folder):
     """Write folder/NAME.svg, folder/NAME.png and the figure's entry in folder/manifest.json.
 
-    Each file is written under a temporary name and then renamed; `folder` is made when only
-    its last part is missing.  Returns the manifest's entry.
+    All three are written under temporary names and renamed at the end: when anything fails,
+    the old files stay.  `folder` is made when only its last part is missing.  Returns the
+    manifest's entry.
 
     Paper: Figs. 1-13.
     """
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
-    for kind, metadata in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
-        with _replacing(folder / f"{drawing.name}.{kind}") as temporary:
-            drawing.figure.savefig(temporary, format=kind, metadata=metadata)
+    manifest = read_manifest(folder)
     theta_off, theta0_off = deviations(drawing.nets)
     entry = {
         "function": drawing.function,
@@ -100,11 +100,14 @@ def save(drawing, folder):
         "max_deviation_theta0_deg": _rounded(theta0_off),
         "claims": drawing.claims,
     }
-    manifest = read_manifest(folder)
     manifest[drawing.name] = entry
-    with _replacing(folder / "manifest.json") as temporary:
-        text = json.dumps(dict(sorted(manifest.items())), indent=2)
-        Path(temporary).write_text(text + "\n", encoding="utf-8")
+    text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False)
+    names = "manifest.json", f"{drawing.name}.svg", f"{drawing.name}.png"
+    with ExitStack() as stack:
+        listing, svg, png = (stack.enter_context(_replacing(folder / name)) for name in names)
+        drawing.figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
+        drawing.figure.savefig(png, format="png", metadata={"Software": None})
+        Path(listing).write_text(text + "\n", encoding="utf-8", newline="\n")
     return entry
 
 
@@ -117,10 +120,10 @@ def read_manifest(folder):
     if not path.exists():
         return {}
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
+        return {} | json.loads(path.read_text(encoding="utf-8"))
+    except (ValueError, TypeError) as error:
         raise ValueError(
-            f"{path} is not valid JSON: delete it and make the figures again"
+            f"{path} is not a JSON object: delete it and make the figures again"
         ) from error
 
 

@@ -33,10 +33,10 @@ def text_of(cell):
     parts = []
     for output in cell.outputs:
         if output.output_type == "stream":
-            parts.append(f"{output.name}: {output.text}")
+            parts.append(output.text)
         elif "image/png" not in output.data:
             parts.append(output.data.get("text/latex", output.data.get("text/plain", "")))
-    return "\n".join(parts)
+    return "".join(parts)  # one print may be stored in several pieces
 
 
 def pictures_of(cell):

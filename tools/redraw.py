@@ -75,6 +75,7 @@ def run(notebook, folder, bar):
         timeout=600,
         kernel_name="python3",
         record_timing=False,
+        coalesce_streams=True,  # else prints may be split in two, or not, from run to run
         extra_arguments=["--log-level=40"],
         resources={"metadata": {"path": str(folder)}},
         on_cell_execute=start,

@@ -1,0 +1,207 @@
+"""Fig. 3: sheared grids and their images under 1/z and z^2.
+
+Paper: Fig. 3.
+"""
+
+import numpy as np
+from matplotlib.collections import PathCollection
+from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
+
+from .. import conformal, measure, parallelogram, plot, publish
+
+RADIANS = {degrees: float(np.radians(degrees)) for degrees in (45, 50, 60, 80)}
+ROWS = [["A", "B", "C"], ["A'", "B'", "C'"], ["C_1", "C_2", "C_3"]]
+MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in range(height)]
+SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as in `grid`
+
+
+def draw(
+    theta=RADIANS[80],
+    theta0=RADIANS[50],
+    theta1=RADIANS[45],
+    theta2=RADIANS[60],
+    cells=10,
+):
+    """Three sheared grids, their conformal images with exact curves, and three patterns.
+
+    theta, theta0: radians, the angles of the grid A; theta1 and theta2: both angles of the
+    grids B and C; cells: the patterns C1 to C3 have cells x cells quads, an even number.
+    Returns a `publish.Drawing`.
+
+    Paper: Fig. 3.
+    """
+    figure, axes = plot.canvas(MOSAIC, 7.2, 6.6)
+    angles = {"A": (theta, theta0), "B": (theta1, theta1), "C": (theta2, theta2)}
+    z = {name: _grid(*angles[name], *SPANS[name]) for name in angles}
+    for name in angles:
+        _preimage(axes[name], name, z[name], *angles[name])
+    z |= {"A'": 1 / z["A"], "B'": z["B"] ** 2, "C'": z["C"] ** 2} | _patterns(theta2, cells)
+    _circles_through_0(axes["A'"], z["A"])
+    _image(axes["A'"], "A'", "under $1/z$", z["A'"], _arcs(z["A"]))
+    for name in "BC":
+        _image(axes[name + "'"], name + "'", "under $z^2$", z[name + "'"], _parabolas(z[name]))
+    _pattern(axes["C_1"], "C_1", "under $1/z$", z["C1"], (0, 4))
+    _pattern(axes["C_2"], "C_2", "under $z^2$, 0 outside", z["C2"], (7, -3))
+    _pattern(axes["C_3"], "C_3", "under $z^2$, 0 inside", z["C3"])
+    nets = {name: (*conformal.quads(z[name]), *angles[name[0]]) for name in z}
+    return publish.Drawing(
+        name="fig03",
+        figure=figure,
+        function="inetlib.drawings.fig03.draw",
+        parameters=dict(theta=theta, theta0=theta0, theta1=theta1, theta2=theta2, cells=cells),
+        data=z,
+        nets=[nets[name] for name in nets if name not in ("A'", "C1")],
+        claims=_claims(angles, nets),
+    )
+
+
+def _grid(theta, theta0, m, first, n):
+    """The grid of App. A.2: unit edges on rows at the heights first h, (first + 1) h, ...
+
+    theta, theta0: radians.  The slanted lines meet the real axis in the integers -m-1 ... -1,
+    so none of them passes through 0.  Complex (m+1, n+1).
+
+    Paper: App. A.2.
+    """
+    _, mu = parallelogram.ratios(theta, theta0)
+    origin = -m - 1 + first * np.exp(1j * theta0) / mu
+    return conformal.sheared_grid(theta, theta0, m, n, origin=origin)
+
+
+def _patterns(theta, cells):
+    """The images C1, C2, C3 of a sheared grid with both angles theta, as a dict.
+
+    The grid of unit edges stands above 0 for C1 and C2.  For C3 its centre is 0: the two
+    sheets of z^2 coincide.  ValueError for odd `cells`, where z^2 would collapse a quad.
+
+    Paper: Fig. 3.
+    """
+    if cells % 2:
+        raise ValueError(f"cells = {cells}: an even number is wanted, so that 0 is a vertex in C3")
+    z = conformal.sheared_grid(theta, theta, cells, cells)
+    z = z - z.mean()
+    height = np.ptp(z.imag)
+    return {"C1": 1 / (z + 1.4j * height), "C2": (z + 0.8j * height) ** 2, "C3": z**2}
+
+
+# --- exact curves -------------------------------------------------------------------------
+
+
+def _parabolas(z):
+    """The images of the lines of a grid under z^2: matplotlib Paths, (u_paths, v_paths).
+
+    Each line becomes one quadratic Bezier curve, which is exact.
+
+    Paper: App. A.2 (z^2).
+    """
+    codes = [Path.MOVETO, Path.CURVE3, Path.CURVE3]
+    points = [np.transpose(conformal.square_bezier(*ends)) for ends in _lines(z)]
+    return tuple([Path(plot.plane(p), codes) for p in family] for family in points)
+
+
+def _arcs(z, samples=181):
+    """The images of the lines of a grid under 1/z: matplotlib Paths, (u_paths, v_paths).
+
+    The points lie on the exact circles, `samples` of them on each arc.
+
+    Paper: App. A.2 (1/z).
+    """
+    return tuple([_arc(*ends, samples) for ends in zip(*pair, strict=True)] for pair in _lines(z))
+
+
+def _lines(z):
+    return (z[0], z[-1]), (z[:, 0], z[:, -1])
+
+
+def _arc(start, end, samples=181):
+    centre, _ = conformal.inversion_circle(start, end - start)
+    # Angles count from the point opposite to 0: the image of a segment never reaches 0.
+    a, b = np.angle((1 / np.array([start, end]) - centre) / centre)
+    return Path(plot.plane(centre + centre * np.exp(1j * np.linspace(a, b, samples))))
+
+
+# --- panels -------------------------------------------------------------------------------
+
+
+def _preimage(ax, name, z, theta, theta0):
+    feet = (z[:, 0] - z[:, 0].imag * (1 / np.tan(theta0) + 1j)).real
+    ax.plot([feet.min() - 0.5, max(0, z.real.max()) + 0.2], [0, 0], color=plot.INK, lw=0.8)
+    plot.curves(ax, np.stack([feet, z[:, 0]], axis=1), plot.GREY, 0.7, ":")
+    for foot in feet:
+        ax.text(foot, -0.15, f"${foot:.0f}$", ha="center", va="top", fontsize=7.5)
+    plot.net(ax, *conformal.quads(z), width=1.2)
+    slant = [np.cos(theta0), np.sin(theta0)]
+    plot.angle(ax, [feet[-1], 0], [1, 0], slant, 0.4, r"$\theta_0$", gap=2.2)
+    _diagonals(ax, z)
+    _origin(ax, (0, -10))
+    first, second = (f"{x:g}^\\circ" for x in np.round(np.degrees([theta, theta0]), 6))
+    both = rf"\theta=\theta_0={first}"
+    text = both if theta == theta0 else rf"\theta={first},\ \theta_0={second}"
+    plot.panel(ax, name, f"${text}$")
+    ax.set_aspect("equal", adjustable="datalim")
+
+
+def _diagonals(ax, z):
+    i, j = (size // 2 for size in z.shape)
+    d1, d2 = ([z[i - 1, j - s], z[i + 1, j + s]] for s in (-1, 1))
+    plot.curves(ax, [d1], plot.COLOURS["d1"], 1.2)
+    plot.curves(ax, [d2], plot.COLOURS["d2"], 1.2)
+    directions = (plot.plane(d[1] - d[0]) for d in (d1, d2))
+    plot.angle(ax, plot.plane(z[i, j]), *directions, 0.33, r"$\theta$", gap=1.95)
+    ax.texts[-1].set_path_effects([withStroke(linewidth=2.5, foreground="white")])
+
+
+def _circles_through_0(ax, z):
+    (left, right), (bottom, top) = _lines(z)
+    turn = np.exp(2j * np.pi * np.arange(181) / 180)
+    pairs = zip(left, right - left, strict=True)
+    centres = [conformal.inversion_circle(*pair)[0] for pair in pairs]
+    plot.curves(ax, [c + abs(c) * turn for c in centres], plot.GREY, 0.6, ":")
+    far = top + 1e6 * (top - bottom)
+    rays = [_arc(*ends).vertices for ends in zip(top, far, strict=True)]
+    plot.curves(ax, rays, plot.GREY, 0.6, ":")
+
+
+def _image(ax, name, text, z, curves):
+    plot.black_quads(ax, *conformal.quads(z), plot.PALE, "none")
+    for straight in (z, z.T):
+        plot.curves(ax, straight, plot.GREY, 0.8, (0, (3, 2)))
+    for family, paths in zip("uv", curves, strict=True):
+        line = {"edgecolors": plot.COLOURS[family], "linewidths": 1.2}
+        ax.add_collection(PathCollection(paths, facecolors="none", zorder=3, **line))
+    _origin(ax, (0, 4))
+    plot.panel(ax, name, text)
+    ax.set_aspect("equal", adjustable="datalim")
+
+
+def _pattern(ax, name, text, z, label=None):
+    V, Q = conformal.quads(z)
+    plot.black_quads(ax, V, Q, plot.FILL, "none")
+    plot.net(ax, V, Q, width=0.6)
+    _origin(ax, label)
+    plot.panel(ax, name, text)
+    ax.set_aspect("equal", adjustable="datalim")
+
+
+def _origin(ax, label):
+    ax.plot(0, 0, "o", color=plot.INK, ms=3, zorder=6)
+    if label:
+        ax.annotate("$0$", (0, 0), label, textcoords="offset points", ha="center", fontsize=8)
+
+
+def _claims(angles, nets):
+    claims = {}
+    for name, (theta, theta0) in angles.items():
+        _, mu = parallelogram.ratios(theta, theta0)
+        claims[f"{name}: h = sin(theta0) / mu"] = round(float(np.sin(theta0) / mu), 9)
+    for name in ("A'", "C1"):
+        V, Q, *asked = nets[name]
+        for what, values, target in zip(
+            ("theta", "theta0"), measure.angles(V, Q), asked, strict=True
+        ):
+            off = np.degrees(measure.spread(values, target).max_deviation)
+            claims[f"{name}: max deviation of {what}, deg (1/z is not exact)"] = round(
+                float(off), 6
+            )
+    return claims

@@ -1,0 +1,169 @@
+"""Fig. 5: a smooth 4-web over its parameter square; discrete derivatives on a mesh."""
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.patheffects import withStroke
+
+from .. import conformal, measure, mesh, parallelogram, plot, publish
+
+STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
+SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
+DISCRETE = {"u": "$f_u$", "v": "$f_v$", "d1": "$d_1$", "d2": "$d_2$"}
+LINES = {"u": "$v$ = const.", "v": "$u$ = const.", "d1": "$u+v$ = const.", "d2": "$u-v$ = const."}
+HALO = [withStroke(linewidth=2.5, foreground="white")]
+
+
+def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevation=22):
+    """An I-web on a catenoid with its parameter square; below, a coarse mesh on it.
+
+    theta, theta0: angles of the web, degrees; lines, cells: steps of the smooth web (even)
+    and of the mesh (odd); size: of the parameter square; azimuth, elevation: the camera,
+    degrees.  Returns a `publish.Drawing`.
+
+    Paper: Fig. 5.
+    """
+    asked = np.radians([theta, theta0])
+    rho = parallelogram.rho(*parallelogram.ratios(*asked))
+    figure, axes = plot.canvas([["A", "A'"], ["B", "B'"]], 7.2, 6.4, ratios=[1, 1.35])
+    view = plot.camera(*np.radians([azimuth, elevation]))
+
+    def surface(uv):
+        return _catenoid(size * (uv[..., 0] + rho * uv[..., 1]))
+
+    net, finer = (_mesh(surface, k) for k in (cells, 2 * cells))
+    _square(axes["A"], lines)
+    _web(axes["A'"], view, surface, lines)
+    _grid(axes["B"], cells)
+    _faces(axes["B'"], view, *net)
+    axes["B"].set(xlim=axes["A"].get_xlim(), ylim=axes["A"].get_ylim())
+    for ax in axes.values():
+        ax.set_anchor("N")
+    plot.panel(axes["A"], "A", "four families of lines")
+    plot.panel(axes["A'"], "A'", "the same lines on the surface")
+    plot.panel(axes["B"], "B", "a triangulated grid")
+    plot.panel(axes["B'"], "B'", "the same grid as a mesh")
+    domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
+    parameters = {"theta": theta, "theta0": theta0, "lines": lines, "cells": cells, "size": size}
+    parameters |= {"azimuth": azimuth, "elevation": elevation}
+    claims = {
+        "sampled_net_max_deviation_deg": _deviation(net, asked),
+        "sampled_net_half_size_max_deviation_deg": _deviation(finer, asked),
+    }
+    return publish.Drawing(
+        "fig05",
+        figure,
+        "inetlib.drawings.fig05.draw",
+        parameters,
+        {"domain": domain[0], "mesh": net[0]},
+        [(*domain, *asked)],
+        claims,
+    )
+
+
+def _catenoid(z):
+    """An isothermal parametrisation: x = Re z around the axis, y = Im z along it."""
+    x, y = np.real(z), np.imag(z)
+    return np.stack([np.cosh(y) * np.sin(x), -np.cosh(y) * np.cos(x), y], axis=-1)
+
+
+def _points(n):
+    """The grid points (u, v) of the square [-1/2, 1/2]^2 in the order of `mesh.grid_quads`."""
+    side = np.linspace(-0.5, 0.5, n + 1)
+    return np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def _families(n, samples=2):
+    """{family: straight lines (samples, 2) through the grid points of the square}."""
+    uv, t = _points(n), np.linspace(0, 1, samples)[:, None]
+    return {
+        name: [(1 - t) * uv[chain[0]] + t * uv[chain[-1]] for chain in chains]
+        for name, chains in mesh.polylines(mesh.grid_quads(n, n))._asdict().items()
+    }
+
+
+def _mesh(surface, cells):
+    return surface(_points(cells)), mesh.grid_quads(cells, cells)
+
+
+def _deviation(net, asked):
+    return round(max(publish.deviations([(*net, *asked)])), 6)
+
+
+def _square(ax, n):
+    for name, lines in _families(n).items():
+        plot.curves(ax, lines, plot.COLOURS[name], 0.8)
+    for k, (name, text) in enumerate(LINES.items()):
+        x, y = (0.06 if k % 2 else -0.47), -0.58 - 0.09 * (k // 2)
+        plot.curves(ax, [[(x, y), (x + 0.09, y)]], plot.COLOURS[name], 1.8)
+        ax.text(x + 0.12, y, text, va="center")
+    _arrows(ax, np.zeros(2), {name: np.array(s) * 1.5 / n for name, s in STEPS.items()}, SMOOTH)
+
+
+def _web(ax, view, surface, n):
+    lines = [
+        (surface(line), plot.COLOURS[name], 0.9)
+        for name, family in _families(n, 25).items()
+        for line in family
+    ]
+    V, Q = _mesh(surface, 3 * n)
+    plot.scene(ax, view, V, Q, plot.shade(V, Q, depth=0.25), lines)
+    step = 1e-5
+    tangents = {
+        name: (surface(step * np.array(s)) - surface(-step * np.array(s))) / (2 * step) * 1.5 / n
+        for name, s in STEPS.items()
+    }
+    flat = {name: view(t)[0] for name, t in tangents.items()}
+    _arrows(ax, view(surface(np.zeros(2)))[0], flat, SMOOTH)
+
+
+def _grid(ax, n):
+    uv, Q = _points(n), mesh.grid_quads(n, n)
+    middle = n // 2 * n + n // 2
+    plot.polygons(ax, uv, Q[[middle]], plot.FILL, zorder=0)
+    for name, lines in _families(n).items():
+        plot.curves(ax, lines, plot.COLOURS[name], 0.9)
+    ax.plot(*uv[Q[middle]].T, "o", color=plot.INK, ms=3, zorder=6)
+    ax.plot(0, 0, "o", color=plot.INK, ms=3.5, zorder=6)
+    ax.text(0, -0.045, "$p$", ha="center", va="center", path_effects=HALO, zorder=7)
+
+
+def _faces(ax, view, V, Q):
+    middle = len(Q) // 2
+    fill = plot.shade(V, Q, depth=0.25)
+    fill[middle] = to_rgb(plot.FILL)
+    lines = [
+        (V[chain], plot.COLOURS[name], 1.1)
+        for name, chains in mesh.polylines(Q)._asdict().items()
+        for chain in chains
+    ]
+    plot.scene(ax, view, V, Q, fill, lines)
+    corners = V[Q[middle]]
+    flat = view(corners)[0]
+    ax.plot(*flat.T, "o", color=plot.INK, ms=3, zorder=6)
+    _corners(ax, flat)
+    d1, d2, m13, m24 = (view(x[middle])[0] for x in measure.vectors(V, Q))
+    vectors = {"u": m13, "v": m24, "d1": d1, "d2": d2}
+    start = view(corners.mean(axis=0))[0]
+    _arrows(ax, start, vectors, DISCRETE)
+    ax.text(*(start - [0.04, -0.02]), "$f(p)$", ha="right", va="center", path_effects=HALO)
+
+
+def _corners(ax, points):
+    """Names v1 ... v4; those of v3 and v4 beside the diagonals that end there."""
+    for k, turn in enumerate((0, 0, -1.2, 1.2)):
+        away = 0.28 * np.exp(1j * turn) * complex(*(points[k] - points.mean(axis=0)))
+        place = points[k] + [away.real, away.imag]
+        ax.text(*place, f"$v_{k + 1}$", ha="center", va="center", path_effects=HALO, zorder=7)
+
+
+def _arrows(ax, start, vectors, names):
+    """The four vectors from one point, each with a white border and its name at its tip."""
+    for name, vector in vectors.items():
+        end, colour = start + vector, plot.COLOURS[name]
+        plot.curves(ax, [np.stack([start, start + 0.85 * vector])], "white", 4.5, zorder=3)
+        plot.vector(ax, start, end, colour, width=2.2, zorder=4)
+        size = np.linalg.norm(vector)
+        tip = end + 0.06 * np.ptp(ax.dataLim.intervaly) * vector / size
+        style = {"ha": "center", "va": "center", "path_effects": HALO, "zorder": 8, "fontsize": 11}
+        ax.text(*tip, names[name], **style)
+    ax.plot(*start, "o", color=plot.INK, ms=4, zorder=7)

@@ -1,0 +1,386 @@
+"""`measure` against values by hand, complex numbers and exact symmetries."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from inetlib import measure, mesh
+
+ONE = np.array([[0, 1, 2, 3]])
+angle = st.floats(0.05, np.pi - 0.05)
+seeds = st.integers(0, 2**32 - 1)
+
+
+def quad(*corners):
+    """One quad with the corners v1 ... v4, in the plane or in space."""
+    return np.array([[*c, 0][:3] for c in corners], dtype=float), ONE
+
+
+HAND = {  # corners, lam, mu, theta, theta0
+    "a rhombus inside": (
+        quad((0, 3), (0, 1), (4, 0), (5, 1)),  # d1 = (4, -3), d2 = (5, 0)
+        (1, 3, np.arctan2(3, 4), np.pi / 2),
+    ),
+    "a rectangle inside": (
+        quad((0, 2), (0, 0), (2, 0), (3, 3)),  # d1 = (2, -2), d2 = (3, 3)
+        (3 / 2, 1, np.pi / 2, np.arctan2(12, 5)),
+    ),
+    "a square inside": (
+        quad((0, 2), (0, 0.5), (2, 0), (2, 2.5)),  # d1 = (2, -2), d2 = (2, 2)
+        (1, 1, np.pi / 2, np.pi / 2),
+    ),
+    "a theta-parallelogram inside": (
+        quad((0, 1), (0, 0), (1, 1), (1.5, 7**0.5 / 2)),  # d1 = (1, 0), d2 = (3, sqrt 7) / 2
+        (2, 2, np.arccos(3 / 4), np.arccos(3 / 4)),
+    ),
+    "a skew quad": (
+        quad((0, 1, 0), (0, 0, 1), (1, 0, 0), (2, 1, 2)),  # d1 = (1, -1, 0), d2 = (2, 1, 1)
+        (3**0.5, (5 / 3) ** 0.5, np.arctan2(11**0.5, 1), np.arctan2(44**0.5, 4)),
+    ),
+}
+
+
+@pytest.mark.parametrize("what", HAND)
+def test_values_by_hand_for(what):
+    (V, Q), (lam, mu, theta, theta0) = HAND[what]
+    found = [x.item() for x in (*measure.ratios(V, Q), *measure.angles(V, Q))]
+    assert found == pytest.approx([lam, mu, theta, theta0], rel=1e-14)
+
+
+def test_vectors_are_the_diagonals_and_medial_lines():
+    V, Q = HAND["a skew quad"][0]
+    wanted = [[1, -1, 0], [2, 1, 1], [1.5, 0, 0.5], [0.5, 1, 0.5]]
+    np.testing.assert_array_equal(np.concatenate(measure.vectors(V, Q)), wanted)
+
+
+# --- random spatial quads, measured by complex numbers ------------------------------------
+
+
+def random_quads(seed, count=20):
+    """Disjoint spatial quads (V, Q) and their diagonals d1, d2 as complex numbers.
+
+    The diagonals are drawn in the plane, counter-clockwise, and then every quad is turned
+    somewhere, and the second diagonal is moved away from the first one.
+    """
+    rng = np.random.default_rng(seed)
+    d1 = np.exp(rng.uniform(-1, 1, count) + 1j * rng.uniform(0, 7, count))
+    d2 = d1 * np.exp(rng.uniform(-1, 1, count) + 1j * rng.uniform(0.1, np.pi - 0.1, count))
+    v1, v2 = rng.normal(size=(2, count, 3))
+    turn = Rotation.from_quat(rng.normal(size=(count, 4)))
+    one, two = (turn.apply(np.stack([d.real, d.imag, 0 * d.real], axis=1)) for d in (d1, d2))
+    V = np.stack([v1, v2, v1 + one, v2 + two], axis=1).reshape(-1, 3)
+    return V, np.arange(4 * count).reshape(-1, 4), d1, d2
+
+
+@given(seeds)
+def test_ratios_and_angles_of_spatial_quads_are_those_of_complex_numbers(seed):
+    V, Q, d1, d2 = random_quads(seed)
+    lam, mu = measure.ratios(V, Q)
+    theta, theta0 = measure.angles(V, Q)
+    np.testing.assert_allclose(lam, abs(d2 / d1), rtol=1e-12)
+    np.testing.assert_allclose(mu, abs((d1 + d2) / (d2 - d1)), rtol=1e-12)
+    np.testing.assert_allclose(theta, np.angle(d2 / d1), rtol=1e-12)
+    np.testing.assert_allclose(theta0, np.angle((d2 - d1) / (d1 + d2)), rtol=1e-12)
+
+
+@given(seeds)
+def test_measured_ratios_and_angles_satisfy_eq_3_and_eq_4(seed):
+    V, Q, *_ = random_quads(seed)
+    lam, mu = measure.ratios(V, Q)
+    theta, theta0 = measure.angles(V, Q)
+    cos_theta = (1 + lam**2) * (mu**2 - 1) / (2 * lam * (1 + mu**2))
+    cos_theta0 = (1 + mu**2) * (lam**2 - 1) / (2 * mu * (1 + lam**2))
+    np.testing.assert_allclose(np.cos(theta), cos_theta, atol=1e-11)
+    np.testing.assert_allclose(np.cos(theta0), cos_theta0, atol=1e-11)
+    assert (abs(mu - 1) / (mu + 1) < lam).all()
+    assert (lam * abs(mu - 1) < mu + 1).all()
+
+
+@given(seeds)
+def test_web_angles_of_spatial_quads_add_up(seed):
+    V, Q, d1, d2 = random_quads(seed)
+    web = measure.web_angles(V, Q)
+    m13, m24 = d1 + d2, d2 - d1
+    np.testing.assert_allclose(web.m13_d2, np.angle(d2 / m13), rtol=1e-11)
+    np.testing.assert_allclose(web.m13_d1, np.angle(m13 / d1), rtol=1e-11)
+    alpha, beta, theta, theta0 = web.m13_d2, web.m13_d1, web.d1_d2, web.m13_m24
+    np.testing.assert_allclose(alpha + beta, theta, rtol=1e-12)
+    np.testing.assert_allclose(web.m24_d2, theta0 - alpha, rtol=1e-11)
+    np.testing.assert_allclose(web.m24_d1, theta0 + beta, rtol=1e-12)
+    np.testing.assert_allclose(theta, np.angle(d2 / d1), rtol=1e-12)
+    np.testing.assert_allclose(theta0, np.angle(m24 / m13), rtol=1e-12)
+
+
+def test_web_angles_are_the_printed_half_angles():
+    V, Q = HAND["a skew quad"][0]  # lam^2 = 3, mu^2 = 5/3
+    root = 2 * (5 / 3) ** 0.5 * (2 * 4 * 8 / 3) ** 0.5
+    web = measure.web_angles(V, Q)
+    assert np.cos(web.m13_d2) == pytest.approx((3 * 5 + 3 + 5 / 3 - 1) / (root * 3**0.5))
+    assert np.cos(web.m13_d1) == pytest.approx((5 - 3 + 5 + 1) / root)
+
+
+@given(angle, angle)
+def test_theta_defect_is_the_difference_of_cotangents(theta, slant):
+    """(13) is d2^2 - d1^2 - 2 d1 d2 = 2A (cot theta0 - cot theta), A = |d1 x d2|."""
+    d1, d2 = 1, 2 * np.sin(slant) * np.exp(1j * theta)
+    theta0 = np.angle((d2 - d1) / (d1 + d2))
+    V, Q = quad((0, 0), (0, 0, 5), (1, 0), (d2.real, d2.imag, 5))
+    wanted = 2 * d2.imag * (1 / np.tan(theta0) - 1 / np.tan(theta)) / (1 + abs(d2) ** 2)
+    assert measure.theta_defect(V, Q).item() == pytest.approx(wanted, abs=1e-12)
+
+
+@given(angle, st.floats(0.01, 100))
+def test_theta_defect_vanishes_where_theta_is_theta0_and_ignores_scale(theta, scale):
+    lam = np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
+    x, y = lam * np.cos(theta), lam * np.sin(theta)
+    V, Q = quad((0, 0), (3, 1, 4), (1, 0), (3 + x, 1 + y, 4))
+    assert measure.theta_defect(scale * V, Q).item() == pytest.approx(0, abs=1e-14)
+    found = np.array(measure.angles(scale * V, Q)).ravel()
+    np.testing.assert_allclose(found, theta, rtol=1e-12)
+    V[3, 1] += 0.1  # adds 0.2 y + 0.01 to d2^2, and nothing to the rest
+    assert measure.theta_defect(V, Q).item() > 1e-3
+
+
+# --- symmetries ---------------------------------------------------------------------------
+
+
+@given(seeds)
+def test_a_quarter_turn_of_the_labels_gives_reciprocals_and_supplements(seed):
+    V, Q, *_ = random_quads(seed)
+    turned = np.roll(Q, 1, axis=1)
+    for a, b in zip(measure.ratios(V, turned), measure.ratios(V, Q), strict=True):
+        np.testing.assert_allclose(a, 1 / b, rtol=1e-13)
+    for a, b in zip(measure.angles(V, turned), measure.angles(V, Q), strict=True):
+        np.testing.assert_allclose(a, np.pi - b, rtol=1e-12)
+
+
+@given(seeds)
+def test_a_half_turn_of_the_labels_changes_nothing(seed):
+    V, Q, *_ = random_quads(seed)
+    for function in (measure.ratios, measure.angles, measure.web_angles):
+        for a, b in zip(function(V, np.roll(Q, 2, axis=1)), function(V, Q), strict=True):
+            np.testing.assert_array_equal(a, b)
+    np.testing.assert_array_equal(
+        measure.theta_defect(V, np.roll(Q, 2, axis=1)), measure.theta_defect(V, Q)
+    )
+
+
+@given(seeds)
+def test_a_mirror_image_labelled_counter_clockwise_inverts_lam_and_supplements_theta0(seed):
+    """v1 stays at the top left: the image of v4 becomes v1, that of v3 becomes v2."""
+    V, Q, *_ = random_quads(seed)
+    image, relabelled = V * [-1, 1, 1], Q[:, ::-1]
+    lam, mu = measure.ratios(V, Q)
+    np.testing.assert_allclose(measure.ratios(image, relabelled), (1 / lam, mu), rtol=1e-13)
+    theta, theta0 = measure.angles(V, Q)
+    found = measure.angles(image, relabelled)
+    np.testing.assert_allclose(found, (theta, np.pi - theta0), rtol=1e-12)
+
+
+def test_reversing_the_orientation_breaks_eq_13():
+    V, Q = HAND["a theta-parallelogram inside"][0]
+    assert measure.theta_defect(V, Q).item() == pytest.approx(0, abs=1e-15)
+    # the diagonals -d2 and -d1, with |d1| = 1, |d2| = 2, d1 d2 = 3/2: (1 - 4 - 3) / 5
+    assert measure.theta_defect(V, Q[:, ::-1]).item() == pytest.approx(-6 / 5, rel=1e-14)
+    theta, theta0 = measure.angles(V, Q[:, ::-1])
+    assert theta + theta0 == pytest.approx(np.pi)
+
+
+@given(seeds, st.floats(1e-6, 1e6))
+def test_moving_turning_and_scaling_a_net_changes_no_ratio_and_no_angle(seed, scale):
+    V, Q, *_ = random_quads(seed)
+    rng = np.random.default_rng(seed)
+    moved = scale * (Rotation.from_quat(rng.normal(size=4)).apply(V) + rng.normal(size=3))
+    for function in (measure.ratios, measure.angles, measure.web_angles):
+        for a, b in zip(function(moved, Q), function(V, Q), strict=True):
+            np.testing.assert_allclose(a, b, rtol=1e-11)
+    np.testing.assert_allclose(
+        measure.theta_defect(moved, Q), measure.theta_defect(V, Q), atol=1e-12
+    )
+
+
+def test_the_measure_leaves_its_arguments_alone():
+    V, Q, *_ = random_quads(0)
+    before = V.copy(), Q.copy()
+    measure.ratios(V, Q), measure.angles(V, Q), measure.web_angles(V, Q), measure.quality(V, Q)
+    np.testing.assert_array_equal(V, before[0])
+    np.testing.assert_array_equal(Q, before[1])
+
+
+def test_small_angles_keep_their_digits():
+    """An arccos would return 0 here: 1 - cos is below the rounding."""
+    V, Q = quad((0, 0), (0, 1), (1, 0), (1.5, 1 + 1e-9))
+    theta, theta0 = measure.angles(V, Q)
+    with mpmath.workdps(40):
+        y = mpmath.mpf(1 + 1e-9) - 1
+        wanted = mpmath.atan(y / mpmath.mpf(1.5))
+        wanted0 = mpmath.atan2(y, mpmath.mpf(0.5)) - mpmath.atan2(y, mpmath.mpf(2.5))
+    assert theta.item() == pytest.approx(float(wanted), rel=1e-14)
+    assert theta0.item() == pytest.approx(float(wanted0), rel=1e-14)
+
+
+# --- whole meshes -------------------------------------------------------------------------
+
+
+def sheared(m, n, u=(1.0, 0, 0), v=(0.3, 0.8, 0)):
+    i, j = np.divmod(np.arange((m + 1) * (n + 1)), n + 1)
+    return i[:, None] * np.array(u) + j[:, None] * np.array(v), mesh.grid_quads(m, n)
+
+
+def test_a_million_quads_are_measured_face_by_face():
+    V, Q = sheared(1000, 1000, v=(0, 2.0, 0))  # d1 = (1, -2), d2 = (1, 2)
+    V[0] += [-0.5, 0, 0.25]
+    lam, mu = measure.ratios(V, Q)
+    theta, theta0 = measure.angles(V, Q)
+    assert [x.shape for x in (lam, mu, theta, theta0)] == [(1_000_000,)] * 4
+    np.testing.assert_allclose(lam[1:], 1, rtol=1e-12)
+    np.testing.assert_allclose(mu[1:], 1 / 2, rtol=1e-12)
+    np.testing.assert_allclose(theta[1:], 2 * np.arctan(2), rtol=1e-12)
+    np.testing.assert_allclose(theta0[1:], np.pi / 2, rtol=1e-12)
+    assert lam[0] == pytest.approx((1.5**2 + 4 + 0.25**2) ** 0.5 / 5**0.5)
+
+
+def test_a_grid_of_congruent_cells_has_one_value_in_every_face():
+    V, Q = sheared(4, 3)
+    theta, theta0 = measure.angles(V, Q)
+    np.testing.assert_allclose(theta0, np.arctan2(0.8, 0.3), rtol=1e-13)
+    np.testing.assert_allclose(theta, np.arctan2(0.8, 0.7) + np.arctan2(0.8, 1.3), rtol=1e-13)
+
+
+# --- errors -------------------------------------------------------------------------------
+
+COLLAPSED = {
+    "first diagonal": (quad((1, 1), (0, 0), (1, 1), (2, 5)), "a diagonal of length zero"),
+    "second diagonal": (quad((0, 1), (2, 3), (1, 1), (2, 3)), "a diagonal of length zero"),
+    "medial line m13": (quad((0, 0), (1, 1), (1, 0), (0, 1)), "a medial line of length zero"),
+    "medial line m24": (quad((0, 0), (1, 1), (1, 0), (2, 1)), "a medial line of length zero"),
+}
+
+
+@pytest.mark.parametrize("name", ["ratios", "angles", "web_angles"])
+@pytest.mark.parametrize("what", COLLAPSED)
+def test_a_collapsed_face_is_named_for_its(what, name):
+    (V, Q), words = COLLAPSED[what]
+    good = sheared(1, 1)
+    V, Q = np.concatenate([good[0], V]), np.concatenate([good[1], Q + 4])
+    with pytest.raises(ValueError, match=f"face 1 has {words}"):
+        getattr(measure, name)(V, Q)
+
+
+def test_theta_defect_refuses_a_collapsed_diagonal():
+    with pytest.raises(ValueError, match="face 0 has a diagonal of length zero"):
+        measure.theta_defect(*COLLAPSED["first diagonal"][0])
+
+
+def test_quality_refuses_a_face_without_area():
+    with pytest.raises(ValueError, match="face 0 has no area: its diagonals are parallel"):
+        measure.quality(*quad((0, 0), (1, 1), (1, 0), (3, 1)))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [measure.ratios, measure.angles, measure.web_angles, measure.theta_defect, measure.quality],
+)
+def test_bad_meshes_are_refused_before_anything_is_measured(function):
+    V, Q = sheared(2, 2)
+    with pytest.raises(ValueError, match="quads are wanted"):
+        function(V, Q[:, :3])
+    with pytest.raises(ValueError, match="only 8 vertices"):
+        function(V[:-1], Q)
+    V[4, 2] = np.nan
+    with pytest.raises(ValueError, match=r"vertex 4 .* not a finite number"):
+        function(V, Q)
+
+
+# --- spread -------------------------------------------------------------------------------
+
+
+def test_spread_by_hand_about_the_mean_and_about_a_target():
+    assert measure.spread([1, 2, 6]) == pytest.approx((3, 1, 6, 3, 2))
+    assert measure.spread([1, 2, 6], target=2) == pytest.approx((3, 1, 6, 4, 5 / 3))
+    assert measure.spread(np.full((2, 2), 7.0)) == (7, 7, 7, 0, 0)
+    assert all(type(x) is float for x in measure.spread([1, 2, 6]))
+
+
+def test_spread_from_a_target_face_by_face():
+    assert measure.spread([1.0, 2.0], np.array([1.5, 2.0])).max_deviation == 0.5
+
+
+@pytest.mark.parametrize("bad", [[], [1, np.nan], [np.inf]])
+def test_spread_refuses_what_has_no_mean(bad):
+    with pytest.raises(ValueError, match="at least one value, all of them finite"):
+        measure.spread(bad)
+
+
+def test_spread_refuses_a_target_that_is_no_number():
+    with pytest.raises(ValueError, match="target = nan"):
+        measure.spread([1.0], target=np.nan)
+
+
+# --- quality ------------------------------------------------------------------------------
+
+
+def test_quality_of_unit_squares():
+    V, Q = sheared(3, 2, v=(0, 1, 0))
+    found = measure.quality(V, Q)
+    assert (found.flips, found.flipped.tolist()) == (0, [])
+    assert found[2:] == pytest.approx((1, 1, 0))
+
+
+@pytest.mark.parametrize("cell", [(0, 0), (1, 1), (2, 1), (3, 2), (0, 2)])
+def test_one_folded_face_is_found_and_no_other(cell):
+    """The corner v4 of one face is pushed across v2: its second diagonal changes direction.
+
+    Found in the flat net, where the sign of the area tells, and in the same net in space.
+    """
+    i, j = cell
+    V, Q = sheared(5, 4, v=(0, 1, 0))
+    V[(i + 1) * 5 + j + 1] = [i - 0.2, j - 0.2, 0]
+    x, y = np.moveaxis(V[Q], 2, 0)[:2]
+    area = (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1) / 2
+    assert np.flatnonzero(area < 0).tolist() == [4 * i + j]
+    turned = Rotation.from_rotvec([0.3, 1.1, -2]).apply(V)
+    for W in (V, turned):
+        found = measure.quality(W, Q)
+        assert (found.flips, found.flipped.tolist()) == (1, [4 * i + j])
+
+
+def test_two_folded_faces_far_apart_are_both_found():
+    V, Q = sheared(6, 6, v=(0, 1, 0))
+    for i, j in [(1, 1), (4, 3)]:
+        V[(i + 1) * 7 + j + 1] = [i - 0.2, j - 0.2, 0]
+    found = measure.quality(V, Q)
+    assert (found.flips, found.flipped.tolist()) == (2, [1 * 6 + 1, 4 * 6 + 3])
+
+
+def test_a_closed_round_surface_has_no_flips():
+    m, n = 12, 9
+    i, j = np.divmod(np.arange(m * n), n)
+    u, v = 2 * np.pi * i / m, 2 * np.pi * j / n
+    r = 3 + np.cos(v)
+    V = np.stack([r * np.cos(u), r * np.sin(u), np.sin(v)], axis=1)
+    at = lambda a, b: (i + a) % m * n + (j + b) % n  # noqa: E731
+    Q = np.stack([at(0, 1), at(0, 0), at(1, 0), at(1, 1)], axis=1)
+    assert measure.quality(V, Q).flips == 0
+
+
+def test_planarity_is_the_distance_of_the_diagonals_over_their_mean_length():
+    h = 0.3  # diagonals of length sqrt 2 at the heights 0 and h
+    V, Q = quad((0, 1, 0), (0, 0, h), (1, 0, 0), (1, 1, h))
+    assert measure.quality(V, Q).planarity == pytest.approx(h / 2**0.5, rel=1e-14)
+    V, Q = quad((0, 2, 0), (0, 0, h), (2, 0, 0), (1, 1, h))  # lengths 2 sqrt 2 and sqrt 2
+    assert measure.quality(V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
+    assert measure.quality(5 * V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
+
+
+def test_area_ratio_and_aspect_are_those_of_the_worst_face():
+    x = np.array([0, 1, 3, 7])  # cells 1 x 1, 2 x 1, 4 x 1
+    V = np.array([[a, b, 0.0] for a in x for b in (0, 1)])
+    found = measure.quality(V, mesh.grid_quads(3, 1))
+    assert found.area_ratio == pytest.approx(1 / 4)
+    assert found.aspect == pytest.approx(4)
+    tall = measure.quality(V[:, [1, 0, 2]] * [-1, 1, 1], mesh.grid_quads(3, 1))
+    assert tall.aspect == pytest.approx(4)

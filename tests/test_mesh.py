@@ -1,0 +1,721 @@
+"""`mesh` against dictionaries, hand-numbered grids and plane geometry."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inetlib import measure, mesh
+
+RNG = np.random.default_rng(7)
+
+
+# --- meshes to test on, built without the library -----------------------------------------
+
+
+def number(i, j, n):
+    return i * (n + 1) + j
+
+
+def slow_grid(m, n):
+    """v1 top left, then counter-clockwise, one face at a time."""
+    cells = [(i, j) for i in range(m) for j in range(n)]
+    corners = [(0, 1), (0, 0), (1, 0), (1, 1)]
+    return np.array([[number(i + a, j + b, n) for a, b in corners] for i, j in cells])
+
+
+def positions(m, n):
+    """Vertex (i, j) at the point (i, j, 0)."""
+    return np.array([[i, j, 0.0] for i in range(m + 1) for j in range(n + 1)])
+
+
+def rolled(m, n, both=False):
+    """A grid closed along u (an annulus), or along u and v too (a torus)."""
+    height = n if both else n + 1
+
+    def at(i, j):
+        return (i % m) * height + (j % n if both else j)
+
+    return np.array(
+        [
+            [at(i, j + 1), at(i, j), at(i + 1, j), at(i + 1, j + 1)]
+            for i in range(m)
+            for j in range(n)
+        ]
+    )
+
+
+def annulus_positions(m, n):
+    """Counter-clockwise faces need u clockwise when v points outwards."""
+    i, j = np.divmod(np.arange(m * (n + 1)), n + 1)
+    z = (1 + j) * np.exp(-2j * np.pi * i / m)
+    return np.stack([z.real, z.imag, 0 * j], axis=1)
+
+
+def star(valence):
+    """Quads around the vertex 0, spokes 1 ... valence, then the outer corners."""
+    spokes = 1 + np.arange(valence)
+    return np.stack(
+        [np.zeros(valence, dtype=int), spokes, spokes + valence, np.roll(spokes, -1)], axis=1
+    )
+
+
+def star_positions(valence):
+    turn = np.exp(2j * np.pi * np.arange(valence) / valence)
+    z = np.concatenate([[0], turn, turn + np.roll(turn, -1)])
+    return np.stack([z.real, z.imag, 0 * z.real], axis=1)
+
+
+def moebius_strip(k):
+    """k quads in a ring, the last glued to the first upside down."""
+    faces = [[2 * i + 1, 2 * i, 2 * i + 2, 2 * i + 3] for i in range(k)]
+    faces[-1][2:] = [1, 0]
+    return np.array(faces)
+
+
+def quarter_turn_handle():
+    """A 4 x 4 grid with two crossing bands, each from the right side to the top side.
+
+    All interior valences are 4 and the one boundary loop is even: only the bands, which
+    glue v-edges to u-edges, forbid the labels.
+    """
+    faces = slow_grid(4, 4).tolist()
+    ends = [((4, 0), (4, 1), (3, 4), (2, 4)), ((4, 2), (4, 3), (1, 4), (0, 4))]
+    for k, corners in enumerate(ends):
+        a, b, c, d = (number(i, j, 4) for i, j in corners)
+        x, y = 25 + 2 * k, 26 + 2 * k
+        faces += [[b, a, x, y], [y, x, d, c]]
+    return np.array(faces)
+
+
+def two_cubes():
+    """Two closed cubes that share the vertex 0."""
+    cube = np.array(
+        [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    )
+    return np.concatenate([cube, np.where(cube == 0, 0, cube + 7)])
+
+
+def half_edges(Q):
+    """{(start, end): number} of all faces, by a plain loop."""
+    return {
+        (int(face[k]), int(face[(k + 1) % 4])): 4 * f + k
+        for f, face in enumerate(Q)
+        for k in range(4)
+    }
+
+
+def edges(Q, slots):
+    """Undirected edges at the given slots of the faces."""
+    return {frozenset(pair) for pair, h in half_edges(Q).items() if h % 4 in slots}
+
+
+def boundary_edges(Q):
+    table = half_edges(Q)
+    return {(a, b) for a, b in table if (b, a) not in table}
+
+
+def labels_agree(Q):
+    """No edge is a v-edge (slots 0, 2) of one face and a u-edge (slots 1, 3) of another."""
+    return not edges(Q, (0, 2)) & edges(Q, (1, 3))
+
+
+def signed_area(points):
+    x, y = np.asarray(points)[..., 0], np.asarray(points)[..., 1]
+    after_x, after_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
+    return (x * after_y - y * after_x).sum(axis=-1) / 2
+
+
+def as_curves(lines):
+    """Curves as a set of tuples, blind to their direction and, if closed, to their start."""
+    result = set()
+    for line in lines:
+        line = [int(k) for k in line]
+        if line[0] == line[-1]:
+            ring = line[:-1]
+            turned = [ring[k:] + ring[:k] for k in range(len(ring))]
+            ways = [tuple(r) for t in turned for r in (t, t[::-1])]
+        else:
+            ways = [tuple(line), tuple(line[::-1])]
+        result.add(min(ways))
+    return result
+
+
+sizes = st.integers(1, 6)
+
+
+# --- building -----------------------------------------------------------------------------
+
+
+def test_two_by_one_quads_are_numbered_as_drawn():
+    np.testing.assert_array_equal(mesh.grid_quads(2, 1), [[1, 0, 2, 3], [3, 2, 4, 5]])
+
+
+@given(sizes, sizes)
+def test_grid_quads_are_those_of_a_plain_loop(m, n):
+    Q = mesh.grid_quads(m, n)
+    assert Q.dtype == np.int64
+    np.testing.assert_array_equal(Q, slow_grid(m, n))
+
+
+def test_grid_quads_are_counter_clockwise_from_the_top_left():
+    corners = positions(3, 2)[mesh.grid_quads(3, 2)]
+    np.testing.assert_allclose(signed_area(corners), 1)
+    v1, v2, _, v4 = np.moveaxis(corners, 1, 0)
+    np.testing.assert_allclose(v1 - v2, [[0, 1, 0]] * 6)
+    np.testing.assert_allclose(v4 - v1, [[1, 0, 0]] * 6)
+
+
+@pytest.mark.parametrize("size", [(0, 1), (1, 0), (-2, 3), (float("nan"), 1)])
+def test_a_grid_without_quads_is_refused(size):
+    with pytest.raises(ValueError, match=rf"m = {size[0]}, n = {size[1]}: .* at least one quad"):
+        mesh.grid_quads(*size)
+
+
+def test_a_fraction_of_a_quad_is_refused_and_a_whole_float_is_a_number():
+    with pytest.raises(ValueError, match=r"m = 2\.5, n = 1: whole numbers"):
+        mesh.grid_quads(2.5, 1)
+    assert mesh.grid_quads(2.0, 1).dtype == np.int64
+
+
+@pytest.fixture(scope="module")
+def hexagon():
+    return mesh.polygon_rings(6, 8)
+
+
+def test_hexagon_with_eight_rings_has_432_quads_and_486_vertices(hexagon):
+    V, Q, polygon = hexagon
+    assert V.shape == (486, 3)
+    assert Q.shape == (432, 4)
+    assert len(polygon) == len(set(polygon.tolist())) == 6
+    assert set(Q.ravel()) == set(range(486))
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 6, 7])
+def test_ring_k_around_the_polygon_has_two_sides_k_quads(sides):
+    V, Q, polygon = mesh.polygon_rings(sides, 4)
+    inside, rest = set(polygon.tolist()), Q
+    for ring in range(1, 5):
+        touching = np.array([bool(inside & set(face.tolist())) for face in rest])
+        assert touching.sum() == 2 * sides * ring
+        inside |= set(rest[touching].ravel().tolist())
+        rest = rest[~touching]
+    assert len(rest) == 0
+    assert len(V) == len(inside)
+
+
+def test_hexagon_corners_have_valence_four_and_all_inner_vertices_too(hexagon):
+    _, Q, polygon = hexagon
+    valence = np.bincount([k for pair in edges(Q, (0, 1, 2, 3)) for k in pair])
+    assert set(valence[polygon]) == {4}
+    inner = set(range(486)) - {a for a, _ in boundary_edges(Q)}
+    assert {int(valence[k]) for k in inner} == {4}
+    assert len(inner) == 486 - 6 - (12 * 8 + 6)
+
+
+def test_hexagon_and_all_faces_around_it_are_counter_clockwise(hexagon):
+    V, Q, polygon = hexagon
+    corners = V[Q]
+    for k in range(4):  # every corner turns left: convex too
+        a, b = (np.roll(corners, -s, axis=1)[:, k] for s in (1, 2))
+        first, second = (a - corners[:, k])[:, :2], (b - a)[:, :2]
+        assert (first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0).all()
+    assert signed_area(V[polygon]) > 0
+    np.testing.assert_allclose(np.ptp(np.linalg.norm(V[polygon], axis=1)), 0, atol=1e-15)
+    assert (V[:, 2] == 0).all()
+
+
+def test_hexagon_mesh_is_labelled_and_a_pentagon_mesh_is_not(hexagon):
+    assert labels_agree(hexagon[1])
+    assert mesh.is_labelled(hexagon[1])
+    assert not mesh.is_labelled(mesh.polygon_rings(5, 2)[1])
+
+
+def test_four_sides_give_a_piece_of_the_square_lattice():
+    V, Q, polygon = mesh.polygon_rings(4, 2)
+    found = sorted(map(tuple, np.round(V[:, :2], 12).tolist()))
+    lattice = np.arange(-2.5, 3)
+    assert found == sorted((x, y) for x in lattice for y in lattice)
+    np.testing.assert_allclose(signed_area(V[Q]), 1)
+    np.testing.assert_allclose(signed_area(V[polygon]), 1)
+    assert len(Q) == 5 * 5 - 1
+
+
+@pytest.mark.parametrize("bad", [(2, 1), (6, 0), (-1, 3)])
+def test_a_polygon_without_rings_or_with_two_sides_is_refused(bad):
+    with pytest.raises(ValueError, match=rf"sides = {bad[0]}, rings = {bad[1]}: needs"):
+        mesh.polygon_rings(*bad)
+
+
+# --- checking -----------------------------------------------------------------------------
+
+
+def bad_coordinate(value):
+    V = positions(2, 2)
+    V[5, 1] = value
+    return V
+
+
+GRID = slow_grid(2, 2)
+BAD = {
+    "no faces": (positions(2, 2), np.zeros((0, 4), dtype=int), "the mesh has no faces"),
+    "an empty list": (positions(2, 2), [], "the mesh has no faces"),
+    "triangles": (positions(2, 2), GRID[:, :3], "the faces are triangles: quads are wanted"),
+    "pentagons": (positions(2, 2), [[0, 1, 2, 3, 4]], r"an array of shape \(1, 5\)"),
+    "one flat list": (positions(2, 2), GRID.ravel(), r"an array of shape \(16,\)"),
+    "floats": (positions(2, 2), GRID.astype(float), "of type float64: integers are wanted"),
+    "booleans": (positions(2, 2), GRID > 3, "of type bool: integers are wanted"),
+    "a negative index": (positions(2, 2), GRID - 1, "face 0 names vertex -1: counting starts at 0"),
+    "counting from one": (positions(2, 2), GRID + 1, "face 3 names vertex 9, .* only 9 vertices"),
+    "a vertex twice": (positions(2, 2), [[0, 1, 2, 3], [4, 5, 6, 5]], "face 1 uses a vertex twice"),
+    "a doubled end": (positions(2, 2), [[3, 1, 2, 3]], "face 0 uses a vertex twice"),
+    "NaN": (bad_coordinate(np.nan), GRID, "vertex 5 has a coordinate that is not a finite number"),
+    "infinity": (bad_coordinate(-np.inf), GRID, "vertex 5 has a coordinate that is not a finite"),
+    "plane vertices": (positions(2, 2)[:, :2], GRID, r"V has the shape \(9, 2\)"),
+    "complex vertices": (positions(2, 2) * 1j, GRID, "type complex128: .* three real coordinates"),
+    "words": (positions(2, 2).astype(str), GRID, "three real coordinates"),
+    "three faces at an edge": (
+        positions(2, 2),
+        [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]],
+        "edge 0-1 belongs to more than two faces",
+    ),
+    "a face upside down": (
+        positions(2, 2),
+        np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]]),
+        "faces . and 2 are oriented against each other|faces 2 and . are oriented",
+    ),
+    "a face twice": (positions(2, 2), np.concatenate([GRID, GRID[:1]]), "more than two|against"),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_check_says_what_is_wrong_with(what):
+    V, Q, words = BAD[what]
+    with pytest.raises(ValueError, match=words):
+        mesh.check(V, Q)
+
+
+def test_check_returns_float64_and_int64_and_takes_lists():
+    V, Q = mesh.check(positions(2, 2).astype(int).tolist(), GRID.astype(np.uint8).tolist())
+    assert (V.dtype, Q.dtype) == (np.float64, np.int64)
+    np.testing.assert_array_equal(V, positions(2, 2))
+    np.testing.assert_array_equal(Q, GRID)
+    assert mesh.check(positions(2, 2), GRID.astype(np.uint8))[1].dtype == np.int64
+
+
+def test_check_arrays_does_not_mind_the_orientation():
+    Q = np.concatenate([GRID[:1, ::-1], GRID[1:]])
+    np.testing.assert_array_equal(mesh.check_arrays(positions(2, 2), Q)[1], Q)
+
+
+# --- adjacency ----------------------------------------------------------------------------
+
+
+def slow_twins(Q):
+    table = half_edges(Q)
+    return [table.get((b, a), -1) for a, b in table]
+
+
+MESHES = {
+    "grid": slow_grid(3, 4),
+    "one quad": slow_grid(1, 1),
+    "annulus": rolled(5, 2),
+    "torus": rolled(4, 3, both=True),
+    "star": star(5),
+    "cubes": two_cubes(),
+    "handle": quarter_turn_handle(),
+}
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_twins_and_neighbours_are_those_of_a_dictionary(name):
+    Q = MESHES[name]
+    wanted = np.array(slow_twins(Q))
+    np.testing.assert_array_equal(mesh.twins(Q), wanted)
+    faces = [[h // 4 if h >= 0 else -1 for h in row] for row in wanted.reshape(-1, 4).tolist()]
+    np.testing.assert_array_equal(mesh.face_neighbours(Q), faces)
+
+
+@given(st.sets(st.integers(0, 35), min_size=1), st.integers(0, 2**32 - 1))
+def test_twins_of_any_shuffled_part_of_a_grid_are_those_of_a_dictionary(part, seed):
+    rng = np.random.default_rng(seed)
+    Q = slow_grid(6, 6)[rng.permutation(sorted(part))]
+    Q = np.stack([np.roll(face, k) for face, k in zip(Q, rng.integers(0, 4, len(Q)), strict=True)])
+    np.testing.assert_array_equal(mesh.twins(Q), slow_twins(Q))
+
+
+def loop_edges(loop):
+    return {(int(a), int(b)) for a, b in zip(loop, np.roll(loop, -1), strict=True)}
+
+
+@pytest.mark.parametrize(("name", "count"), [("grid", 1), ("annulus", 2), ("star", 1)])
+def test_boundary_loops_run_through_every_boundary_edge_once(name, count):
+    Q = MESHES[name]
+    loops = mesh.boundary_loops(Q)
+    assert len(loops) == count
+    assert sum(map(len, loops)) == len(boundary_edges(Q))
+    assert set().union(*map(loop_edges, loops)) == boundary_edges(Q)
+
+
+def test_a_grid_has_one_boundary_loop_counter_clockwise():
+    (loop,) = mesh.boundary_loops(slow_grid(3, 4))
+    assert len(loop) == 14
+    assert signed_area(positions(3, 4)[loop]) == 12
+
+
+def test_an_annulus_has_the_mesh_on_the_left_of_both_loops():
+    V = annulus_positions(9, 2)
+    assert (signed_area(V[rolled(9, 2)]) > 0).all()
+    inner, outer = sorted(mesh.boundary_loops(rolled(9, 2)), key=lambda loop: V[loop].max())
+    assert signed_area(V[inner]) < 0 < signed_area(V[outer])
+
+
+def test_a_removed_face_gives_a_clockwise_loop_of_its_own():
+    loops = mesh.boundary_loops(np.delete(slow_grid(3, 3), 4, axis=0))
+    assert sorted(signed_area(positions(3, 3)[loop]) for loop in loops) == [-1, 9]
+
+
+def test_closed_surfaces_have_no_boundary():
+    assert mesh.boundary_loops(rolled(3, 4, both=True)) == []
+    assert mesh.boundary_loops(two_cubes()[:6]) == []
+
+
+def test_boundary_loops_that_touch_are_refused():
+    with pytest.raises(ValueError, match="two boundary loops touch at vertex 4"):
+        mesh.boundary_loops(slow_grid(2, 2)[[0, 3]])
+
+
+# --- labelling ----------------------------------------------------------------------------
+
+
+def shuffled(Q, rng, flips=True):
+    """The same faces with other first corners, some of them turned over."""
+    turned = [np.roll(face, k) for face, k in zip(Q, rng.integers(0, 4, len(Q)), strict=True)]
+    over = rng.integers(0, 2, len(Q)) * flips
+    return np.array([face[::-1] if o else face for face, o in zip(turned, over, strict=True)])
+
+
+def test_is_labelled_sees_one_quarter_turn_and_ignores_half_turns():
+    Q = slow_grid(3, 3)
+    assert mesh.is_labelled(Q)
+    Q[4] = np.roll(Q[4], 2)
+    assert mesh.is_labelled(Q)
+    Q[4] = np.roll(Q[4], 1)
+    assert not mesh.is_labelled(Q)
+
+
+def test_is_labelled_of_a_single_quad_and_of_separate_quads_is_true():
+    assert mesh.is_labelled(slow_grid(1, 1))
+    assert mesh.is_labelled([[0, 1, 2, 3], [5, 4, 7, 6]])
+
+
+def test_is_labelled_refuses_faces_oriented_against_each_other():
+    with pytest.raises(ValueError, match="oriented against each other"):
+        mesh.is_labelled([[1, 0, 2, 3], [2, 3, 5, 4]])
+
+
+@given(st.integers(0, 2**32 - 1), sizes, sizes)
+def test_is_labelled_agrees_with_sets_of_edges_for_random_quarter_turns(seed, m, n):
+    Q = shuffled(slow_grid(m, n), np.random.default_rng(seed), flips=False)
+    assert mesh.is_labelled(Q) == labels_agree(Q)
+
+
+@given(st.integers(0, 2**32 - 1), sizes, sizes)
+def test_label_puts_a_shuffled_grid_in_order(seed, m, n):
+    rng = np.random.default_rng(seed)
+    Q = shuffled(slow_grid(m, n), rng)[rng.permutation(m * n)]
+    before = Q.copy()
+    done = mesh.label(Q)
+    np.testing.assert_array_equal(Q, before)
+    np.testing.assert_array_equal(done[0], Q[0])
+    np.testing.assert_array_equal(np.sort(done, axis=1), np.sort(Q, axis=1))
+    assert labels_agree(done)
+    assert len(half_edges(done)) == 4 * m * n  # no directed edge twice: oriented alike
+    areas = signed_area(positions(m, n)[done])
+    assert (areas == areas[0]).all()
+
+
+def test_label_keeps_the_first_face_of_each_component():
+    Q = np.concatenate([slow_grid(2, 2), np.roll(slow_grid(2, 2), 1, axis=1) + 9])
+    Q[[1, 6]] = np.roll(Q[[1, 6]], 1, axis=1)
+    done = mesh.label(Q)
+    np.testing.assert_array_equal(done[[0, 4]], Q[[0, 4]])
+    assert labels_agree(done)
+
+
+@pytest.mark.parametrize("name", ["annulus", "torus"])
+def test_label_puts_shuffled_annuli_and_tori_in_order(name):
+    done = mesh.label(shuffled(MESHES[name], np.random.default_rng(3)))
+    assert labels_agree(done)
+    assert len(half_edges(done)) == done.size
+
+
+@pytest.mark.parametrize("sides", [4, 6, 8])
+def test_label_puts_shuffled_rings_around_an_even_polygon_in_order(sides):
+    Q = mesh.polygon_rings(sides, 3)[1]
+    assert labels_agree(mesh.label(shuffled(Q, np.random.default_rng(sides))))
+
+
+@pytest.mark.parametrize("sides", [3, 5, 7])
+def test_label_refuses_an_odd_polygon_and_names_its_boundary_loop(sides):
+    _, Q, polygon = mesh.polygon_rings(sides, 2)
+    words = r"boundary loop through the vertices \[([\d, ]+)\]( \.\.\.)? has an odd sum"
+    with pytest.raises(ValueError, match=words) as caught:
+        mesh.label(Q)
+    listed = str(caught.value).split("[")[1].split("]")[0]
+    named = {int(k) for k in listed.split(", ")}
+    assert named <= set(polygon.tolist())
+    assert len(named) == min(sides, 6)
+
+
+@pytest.mark.parametrize("valence", [3, 5, 7])
+def test_label_refuses_an_odd_interior_vertex_and_names_it(valence):
+    Q = (star(valence) + 11) % (2 * valence + 1)  # the centre gets another number
+    centre = 11 % (2 * valence + 1)
+    words = f"interior vertex {centre} has the odd valence {valence}"
+    with pytest.raises(ValueError, match=words):
+        mesh.label(Q)
+
+
+def test_label_takes_an_even_star():
+    assert labels_agree(mesh.label(star(6)))
+
+
+@pytest.mark.parametrize("k", [3, 4, 7])
+def test_label_refuses_a_moebius_strip(k):
+    with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
+        mesh.label(moebius_strip(k))
+    listed = str(caught.value).split("[")[1].split("]")[0]
+    assert {int(f) for f in listed.split(", ")} == set(range(k))
+
+
+def test_label_refuses_a_handle_that_glues_u_to_v_and_names_a_loop_of_faces():
+    Q = quarter_turn_handle()
+    assert len(mesh.boundary_loops(Q)) == 1
+    with pytest.raises(ValueError, match="u and v change places along the closed loop") as caught:
+        mesh.label(Q)
+    loop = [int(f) for f in str(caught.value).split("[")[1].split("]")[0].split(", ")]
+    table = half_edges(Q)
+    turns = 0
+    for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
+        shared = [(h, table[p[::-1]]) for p, h in table.items() if h // 4 == a and p[::-1] in table]
+        (pair,) = [(h, t) for h, t in shared if t // 4 == b]
+        turns += sum(pair)
+    assert turns % 2 == 1  # an odd number of quarter turns: the named loop is to blame
+
+
+# --- curves -------------------------------------------------------------------------------
+
+
+@given(sizes, sizes)
+def test_polylines_of_a_grid_are_its_rows_columns_and_diagonals(m, n):
+    found = mesh.polylines(slow_grid(m, n))
+    rows = [[number(i, j, n) for i in range(m + 1)] for j in range(n + 1)]
+    columns = [[number(i, j, n) for j in range(n + 1)] for i in range(m + 1)]
+    inside = [(i, j) for i in range(m + 1) for j in range(n + 1)]
+    rising = [[number(i, j, n) for i, j in inside if i - j == c] for c in range(-n + 1, m)]
+    falling = [[number(i, j, n) for i, j in inside if i + j == c] for c in range(1, m + n)]
+    for lines, wanted in zip(found, (rows, columns, falling, rising), strict=True):
+        assert len(lines) == len(wanted)
+        assert as_curves(lines) == as_curves(wanted)
+
+
+def test_curves_around_an_annulus_are_closed_and_repeat_their_first_vertex():
+    found = mesh.polylines(rolled(5, 2))
+    assert as_curves(found.u) == as_curves([[(i % 5) * 3 + j for i in range(6)] for j in range(3)])
+    assert all(line[0] == line[-1] and len(line) == 6 for line in found.u)
+    assert as_curves(found.v) == as_curves([[3 * i, 3 * i + 1, 3 * i + 2] for i in range(5)])
+    for lines, step in ((found.d1, -1), (found.d2, 1)):
+        wanted = [[((i + step * j) % 5) * 3 + j for j in range(3)] for i in range(5)]
+        assert as_curves(lines) == as_curves(wanted)
+
+
+@pytest.mark.parametrize("size", [(3, 3), (4, 6), (5, 3)])
+def test_diagonals_of_a_torus_close_after_the_least_common_multiple(size):
+    m, n = size
+    found = mesh.polylines(rolled(m, n, both=True))
+    assert [len(lines) for lines in found] == [n, m, np.gcd(m, n), np.gcd(m, n)]
+    for lines, length in zip(found, (m, n, np.lcm(m, n), np.lcm(m, n)), strict=True):
+        assert {len(line) - 1 for line in lines} == {length}
+        assert all(line[0] == line[-1] for line in lines)
+
+
+def test_curves_end_at_a_singular_vertex():
+    found = mesh.polylines(mesh.label(star(6)))
+    for lines in (found.u, found.v):
+        ends = [line for line in lines if 0 in line]
+        assert len(ends) == 3
+        assert all(0 in (line[0], line[-1]) for line in ends)
+
+
+@pytest.mark.parametrize("name", ["grid", "annulus", "torus"])
+def test_the_four_families_run_through_every_edge_and_diagonal_once(name):
+    Q = MESHES[name]
+    families = mesh.polylines(Q)
+    steps = [[frozenset(map(int, s)) for c in f for s in pairwise(c)] for f in families]
+    wanted = (
+        edges(Q, (1, 3)),
+        edges(Q, (0, 2)),
+        {frozenset(map(int, pair)) for pair in Q[:, [0, 2]]},
+        {frozenset(map(int, pair)) for pair in Q[:, [1, 3]]},
+    )
+    for found, pairs in zip(steps, wanted, strict=True):
+        assert len(found) == len(pairs)
+        assert set(found) == pairs
+
+
+def test_polylines_need_labels():
+    with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
+        mesh.polylines(mesh.polygon_rings(5, 1)[1])
+
+
+# --- checkerboard -------------------------------------------------------------------------
+
+
+def bumpy(m, n, seed=5):
+    """A grid of random spatial quads."""
+    return positions(m, n) + np.random.default_rng(seed).uniform(-0.3, 0.3, ((m + 1) * (n + 1), 3))
+
+
+def test_black_faces_join_the_midpoints_of_the_four_edges_in_order():
+    V, Q = bumpy(4, 3), slow_grid(4, 3)
+    board = mesh.checkerboard(V, Q)
+    for f, face in enumerate(Q):
+        for k in range(4):
+            middle = (V[face[k]] + V[face[(k + 1) % 4]]) / 2
+            np.testing.assert_allclose(board.V[board.black[f, k]], middle, atol=1e-15)
+
+
+def test_black_faces_of_spatial_quads_are_parallelograms_along_the_diagonals():
+    V, Q = bumpy(4, 3), slow_grid(4, 3)
+    board = mesh.checkerboard(V, Q)
+    p1, p2, p3, p4 = np.moveaxis(board.V[board.black], 1, 0)
+    np.testing.assert_allclose(p2 - p1, p3 - p4, atol=1e-15)
+    np.testing.assert_allclose(p2 - p1, (V[Q[:, 2]] - V[Q[:, 0]]) / 2, atol=1e-15)
+    np.testing.assert_allclose(p3 - p2, (V[Q[:, 3]] - V[Q[:, 1]]) / 2, atol=1e-15)
+
+
+def test_black_faces_of_plane_quads_have_half_their_area():
+    V, Q = bumpy(4, 3) * [1, 1, 0], slow_grid(4, 3)
+    board = mesh.checkerboard(V, Q)
+    np.testing.assert_allclose(signed_area(board.V[board.black]), signed_area(V[Q]) / 2)
+
+
+def test_white_faces_surround_the_inner_vertices_counter_clockwise():
+    m, n = 4, 3
+    board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
+    corners = board.V[board.white]
+    assert board.white.shape == ((m - 1) * (n - 1), 4)
+    np.testing.assert_allclose(signed_area(corners), 0.5)
+    centres = sorted(map(tuple, corners.mean(axis=1)[:, :2].tolist()))
+    assert centres == [(i, j) for i in range(1, m) for j in range(1, n)]
+    assert board.others == []
+
+
+def test_every_edge_has_one_midpoint_and_no_two_black_faces_share_an_edge():
+    m, n = 4, 3
+    board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
+    assert len(board.V) == m * (n + 1) + n * (m + 1)
+    assert len({tuple(p) for p in board.V.tolist()}) == len(board.V)
+    assert set(board.black.ravel()) == set(range(len(board.V)))
+    assert len(half_edges(board.black)) == 4 * m * n
+    assert not {(b, a) for a, b in half_edges(board.black)} & set(half_edges(board.black))
+    inner = {(b, a) for a, b in half_edges(board.white)}
+    assert inner <= set(half_edges(board.black))
+
+
+@pytest.mark.parametrize("valence", [3, 5, 6])
+def test_a_singular_vertex_gets_a_polygon_of_its_own(valence):
+    V, Q = star_positions(valence), star(valence)
+    board = mesh.checkerboard(V, shuffled(Q, np.random.default_rng(1), flips=False))
+    (polygon,) = board.others
+    assert board.white.shape == (0, 4)
+    wanted = np.sort_complex(np.round(V[1 : valence + 1] @ [0.5, 0.5j, 0], 9))
+    np.testing.assert_allclose(
+        np.sort_complex(np.round(board.V[polygon] @ [1, 1j, 0], 9)), wanted, atol=1e-8
+    )
+    assert signed_area(board.V[polygon]) > 0
+
+
+def test_the_hexagon_mesh_has_white_quads_only(hexagon):
+    V, Q, _ = hexagon
+    board = mesh.checkerboard(V, Q)
+    assert board.others == []
+    assert len(board.white) == 486 - 6 - 102
+    assert (signed_area(board.V[board.white]) > 0).all()
+    assert (signed_area(board.V[board.black]) > 0).all()
+
+
+def test_a_closed_surface_has_one_white_face_a_vertex():
+    Q = rolled(4, 3, both=True)
+    board = mesh.checkerboard(RNG.normal(size=(12, 3)), Q)
+    assert (len(board.black), len(board.white), len(board.V)) == (12, 12, 24)
+
+
+def test_surfaces_that_share_only_a_vertex_are_refused():
+    with pytest.raises(ValueError, match="faces at vertex 0 form two fans"):
+        mesh.checkerboard(RNG.normal(size=(15, 3)), two_cubes())
+
+
+# --- diagonal meshes ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["grid", "annulus", "torus"])
+def test_edges_of_the_diagonal_meshes_are_face_diagonals(name):
+    Q = rolled(4, 6, both=True) if name == "torus" else slow_grid(5, 4)
+    Q = rolled(6, 3) if name == "annulus" else Q
+    first = {frozenset(map(int, pair)) for pair in Q[:, [0, 2]]}
+    second = {frozenset(map(int, pair)) for pair in Q[:, [1, 3]]}
+    for D in mesh.diagonal_meshes(Q):
+        assert len(D) > 2
+        assert edges(D, (1, 3)) <= first
+        assert edges(D, (0, 2)) <= second
+        assert mesh.is_labelled(D)
+
+
+@given(st.integers(2, 6), st.integers(2, 6))
+def test_diagonal_meshes_of_a_grid_split_it_like_a_chessboard(m, n):
+    Qa, Qb = mesh.diagonal_meshes(slow_grid(m, n))
+    V = positions(m, n)
+    colour = V[:, :2].sum(axis=1) % 2
+    inner = [(i + j) % 2 for i in range(1, m) for j in range(1, n)]
+    first = colour[slow_grid(m, n)[0, 0]]
+    assert len(Qa) == sum(c != first for c in inner)
+    assert len(Qb) == sum(c == first for c in inner)
+    assert (colour[Qa] == first).all()
+    assert (colour[Qb] != first).all()
+    for D in (Qa, Qb):
+        np.testing.assert_allclose(signed_area(V[D]), 2)
+        along_u = V[D[:, 2]] - V[D[:, 1]]
+        np.testing.assert_allclose(np.abs(along_u @ [1, -1, 0]), 2)  # parallel to d1 = (1, -1)
+
+
+def test_diagonal_meshes_of_a_sheared_grid_have_the_swapped_shape():
+    """Y_u = X_u - X_v, Y_v = X_u + X_v: its medial lines meet at theta, and its diagonals
+    Y_u - Y_v = -2 X_v and Y_u + Y_v = 2 X_u at pi - theta0, in the ratio |X_u| / |X_v|."""
+    u, v = np.array([1.3, 0.2, 0]), np.array([0.4, 0.7, 0])
+    V = positions(6, 5)[:, :1] * u + positions(6, 5)[:, 1:2] * v
+    theta = np.arccos((u - v) @ (u + v) / np.linalg.norm(u - v) / np.linalg.norm(u + v))
+    theta0 = np.arccos(u @ v / np.linalg.norm(u) / np.linalg.norm(v))
+    lam, mu = np.linalg.norm(u + v) / np.linalg.norm(u - v), np.linalg.norm(u) / np.linalg.norm(v)
+    for D in mesh.diagonal_meshes(slow_grid(6, 5)):
+        for found, wanted in zip(measure.angles(V, D), (np.pi - theta0, theta), strict=True):
+            np.testing.assert_allclose(found, wanted, rtol=1e-13)
+        for found, wanted in zip(measure.ratios(V, D), (mu, 1 / lam), strict=True):
+            np.testing.assert_allclose(found, wanted, rtol=1e-13)
+
+
+def test_a_single_quad_has_no_diagonal_faces():
+    assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
+
+
+def test_an_odd_torus_has_no_diagonal_meshes():
+    with pytest.raises(ValueError, match="no chessboard colouring"):
+        mesh.diagonal_meshes(rolled(3, 4, both=True))
+
+
+def test_diagonal_meshes_need_labels():
+    with pytest.raises(ValueError, match=r"call mesh\.label"):
+        mesh.diagonal_meshes(mesh.polygon_rings(5, 1)[1])
