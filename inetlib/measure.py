@@ -79,7 +79,7 @@ def _angle(a, b):
 def ratios(V, Q):
     """(lam, mu) = (|d2| / |d1|, |m13| / |m24|) of every face; ValueError where one collapses.
 
-    Paper: Eq. (11), Eq. (12), Prop. 4.
+    Paper: Eq. (11), Eq. (12), Prop. 4, Def. 14.
     """
     d1, d2, m13, m24 = vectors(V, Q)
     lam = _length(d2, "a diagonal") / _length(d1, "a diagonal")

@@ -314,7 +314,7 @@ def polylines(Q):
     discrete X_u, v = const), v the v-edges, d1 the diagonals v1 v3 (Y_u), d2 the diagonals
     v2 v4 (Y_v).  Curves end at the boundary and at singular vertices.
 
-    Paper: Sec. 4.2, Sec. 4.3 (4-web).
+    Paper: Thm 8, Sec. 4.3 (4-web).
     """
     if not is_labelled(Q):
         raise ValueError("the faces do not agree on u and v: call mesh.label first")
@@ -381,7 +381,7 @@ def checkerboard(V, Q):
     edges v1 v2, v2 v3, v3 v4, v4 v1 in that order; `white` (w, 4) the quads around interior
     vertices of valence 4; `others` the polygons around the remaining interior vertices.
 
-    Paper: Sec. 2, Cor. 9.
+    Paper: Sec. 2, Cor. 9, Cor. 15, Cor. 16, Cor. 17, Cor. 18.
     """
     V, Q = check_arrays(V, Q)
     twin = twins(Q)

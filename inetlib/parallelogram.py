@@ -158,7 +158,7 @@ def lengths(lam, mu):
 
     For lam = mu (a theta-parallelogram) they are 1, lam, sqrt 2, sqrt 2 lam.
 
-    Paper: Sec. 3.1, Eq. (2), Eq. (7).
+    Paper: Sec. 3.1, Eq. (2), Eq. (7), App. A.1.
     """
     lam, mu = _require_admissible(lam, mu)
     p = _lib(lam, mu).sqrt(2 * (1 + lam**2) / (1 + mu**2))
@@ -171,7 +171,7 @@ def cosines(lam, mu):
     For lam = mu both are (lam - 1/lam) / 2.  Use `angles` for the angles themselves: an
     arccos of these loses half the digits near 0 and pi.
 
-    Paper: Eq. (3), Eq. (8), Lemma 1.
+    Paper: Eq. (3), Eq. (8), Lemma 1, Def. 10.
     """
     lam, mu = _require_admissible(lam, mu)
     cos_theta = (1 + lam**2) * (mu**2 - 1) / (2 * lam * (1 + mu**2))
@@ -240,7 +240,7 @@ def ratios(theta, theta0):
     theta, theta0: radians, numbers or arrays that broadcast; ValueError outside (0, pi).
     theta = theta0 gives lam = mu = cos theta + sqrt(1 + cos^2 theta).
 
-    Paper: inverse of Lemma 1, Eq. (8) for theta = theta0 (beyond the paper otherwise).
+    Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1 (beyond the paper).
     """
     log_lam, log_mu = log_ratios(theta, theta0)
     xp = _lib(log_lam, log_mu)
@@ -265,7 +265,7 @@ def diagonal_ratio(rho):
     rho: complex number, array or symbol, not 1, else ValueError.  In terms of s = Y_v / Y_u
     and r = 1 / rho it is the involution s = (r + 1) / (r - 1), r = (s + 1) / (s - 1).
 
-    Paper: Sec. 4.2 in complex form (beyond the paper).
+    Paper: Thm 7 in complex form (beyond the paper).
     """
     if _lib(rho) is np:
         rho = np.asarray(rho, dtype=complex)[()]

@@ -51,7 +51,7 @@ def headings(notebook):
     return " ".join(line for line in lines if line.startswith("#"))
 
 
-def tests_of(path):
+def names_in(path):
     tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
     return {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
 
@@ -79,7 +79,7 @@ def test_a_row_names_a_function_a_test_and_a_heading_that_exist(item):
         assert item in cited(docs[name]), f"{name} does not cite {item}"
     for name in tests:
         path, _, test = name.partition("::")
-        assert test in tests_of(f"tests/{path}"), name
+        assert test in names_in(f"tests/{path}"), name
     stem, heading = re.fullmatch(r"\[(\w+)\]\(notebooks/\1\.ipynb\), (.+)", notebook).groups()
     assert heading == item
     assert re.search(re.escape(item) + r"(?!\d)", headings(stem)), (
@@ -97,7 +97,7 @@ def test_every_docstring_that_cites_an_item_stands_in_its_row():
 def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
     text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
     done = re.findall(r"^## E(\d+) ", text, re.MULTILINE)
-    found = tests_of("tests/test_errata.py")
+    found = names_in("tests/test_errata.py")
     parts = re.split(r"^## ", text, flags=re.MULTILINE)[1:]
     for part in parts:
         if part.startswith("E"):
