@@ -30,7 +30,7 @@ test-fast: $(READY)
 	$(BIN)/python -m pytest -m "not notebook"
 
 notebooks: $(READY)
-	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 --ServerApp.root_dir=notebooks
+	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb
 
 lint: $(READY)
 	$(BIN)/ruff format .

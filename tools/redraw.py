@@ -32,7 +32,13 @@ def main(arguments=None):
     if not paths:
         print("redraw: no notebook of that name in notebooks/", file=sys.stderr)
         return 2
-    notebooks = {path: nbformat.read(path, as_version=4) for path in paths}
+    notebooks = {}
+    for path in paths:
+        try:
+            notebooks[path] = nbformat.read(path, as_version=4)
+        except ValueError:
+            print(f"redraw: {path} is not a notebook: restore it with git", file=sys.stderr)
+            return 2
     total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
     seconds = {}
     with tqdm(total=total, unit="cell") as bar:

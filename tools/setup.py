@@ -6,6 +6,7 @@
 Needs Python >= 3.11 and the network; nothing outside .venv changes.
 """
 
+import argparse
 import shutil
 import subprocess
 import sys
@@ -19,7 +20,9 @@ def main():
     """Exit code 0 when .venv is ready; a sentence and 1 when not."""
     if sys.version_info < (3, 11):
         return f"Python {sys.version.split()[0]} is too old: 3.11 or newer is needed (PYTHON=...)"
-    if "--remove" in sys.argv[1:]:
+    parser = argparse.ArgumentParser(description="Make .venv and install the project into it.")
+    parser.add_argument("--remove", action="store_true", help="remove .venv instead")
+    if parser.parse_args().remove:
         shutil.rmtree(VENV, ignore_errors=True)
         return 0
     python = VENV / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
