@@ -123,6 +123,8 @@ def _parts(z):
 def _moment(point, direction):
     """h of the line Im(conj(direction) z) = h."""
     (a, b), (c, d) = _parts(direction), _parts(point)
+    if a == 0 and b == 0:
+        raise ValueError("direction = 0: a line needs a direction other than 0")
     return a * d - b * c
 
 

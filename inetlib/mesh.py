@@ -10,8 +10,7 @@ The corners of every quad are labelled from the top left, u running along i and 
                     u
 
 A quarter turn of the labels turns both ratios into their reciprocals, so a mesh is usable
-only when all faces agree (`is_labelled`); a half turn changes nothing.  A half-edge is the
-number 4 f + slot; it runs from corner `slot` of face f to the next corner.
+only when all faces agree (`is_labelled`); a half turn changes nothing.
 
 Paper: Sec. 2, Sec. 4.1.
 """
@@ -19,8 +18,9 @@ Paper: Sec. 2, Sec. 4.1.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+
+from .adjacency import boundary_loops, check_quads, fans, pairs, twins, two_colour
+from .adjacency import face_neighbours as face_neighbours  # boundary_loops, twins: public here too
 
 
 class Checkerboard(NamedTuple):
@@ -116,7 +116,7 @@ def check_arrays(V, Q):
 
     Paper: Sec. 4.1.
     """
-    V, Q = np.asarray(V), _check_quads(Q)
+    V, Q = np.asarray(V), check_quads(Q)
     if V.ndim != 2 or V.shape[1] != 3 or V.dtype.kind not in "iuf":
         raise ValueError(
             f"V has the shape {V.shape} and type {V.dtype}: "
@@ -132,97 +132,6 @@ def check_arrays(V, Q):
         bad = np.flatnonzero(~np.isfinite(V).all(axis=1))[0]
         raise ValueError(f"vertex {bad} has a coordinate that is not a finite number")
     return V, Q
-
-
-def _check_quads(Q):
-    Q = np.asarray(Q)
-    if Q.size == 0:
-        raise ValueError("the mesh has no faces")
-    if Q.ndim != 2 or Q.shape[1] != 4:
-        what = "triangles" if Q.ndim == 2 and Q.shape[1] == 3 else f"an array of shape {Q.shape}"
-        raise ValueError(f"the faces are {what}: quads are wanted, one row of four vertices each")
-    if not np.issubdtype(Q.dtype, np.integer):
-        raise ValueError(f"the faces are of type {Q.dtype}: integers are wanted")
-    if Q.min() < 0:
-        raise ValueError(
-            f"face {np.argmin(Q.min(axis=1))} names vertex {Q.min()}: counting starts at 0"
-        )
-    a, b, c, d = Q.T
-    repeated = (a == b) | (b == c) | (c == d) | (d == a) | (a == c) | (b == d)
-    if repeated.any():
-        face = np.argmax(repeated)
-        raise ValueError(f"face {face} uses a vertex twice: {Q[face].tolist()}")
-    return Q.astype(np.int64, copy=False)
-
-
-def _pairs(Q):
-    """Half-edges that lie on the same edge: (k, 2), and ValueError for non-manifold edges."""
-    start, end = Q.ravel(), np.roll(Q, -1, axis=1).ravel()
-    key = np.minimum(start, end) * (Q.max() + 1) + np.maximum(start, end)
-    order = np.argsort(key, kind="stable")
-    same = key[order][1:] == key[order][:-1]
-    three = np.flatnonzero(same[1:] & same[:-1])
-    if three.size:
-        h = order[three[0]]
-        raise ValueError(f"edge {start[h]}-{end[h]} belongs to more than two faces: not a manifold")
-    first = np.flatnonzero(same)
-    return np.stack([order[first], order[first + 1]], axis=1)
-
-
-def twins(Q):
-    """The opposite half-edge of each half-edge, -1 on the boundary: int64 (4 f,).
-
-    Q: (f, 4).  Half-edge 4 f + k runs from Q[f, k] to Q[f, (k+1) % 4].  ValueError for
-    non-manifold edges and for neighbouring faces of opposite orientation.
-
-    Paper: Sec. 2 (adjacency).
-    """
-    Q = _check_quads(Q)
-    one, two = _pairs(Q).T
-    start = Q.ravel()
-    clash = np.flatnonzero(start[one] == start[two])
-    if clash.size:
-        faces = one[clash[0]] // 4, two[clash[0]] // 4
-        raise ValueError(
-            f"faces {faces[0]} and {faces[1]} are oriented against each other: see mesh.label"
-        )
-    twin = np.full(Q.size, -1)
-    twin[one], twin[two] = two, one
-    return twin
-
-
-def face_neighbours(Q):
-    """The faces across the four edges of each face, -1 at the boundary: (f, 4).
-
-    Paper: Sec. 2 (adjacency).
-    """
-    twin = twins(Q)
-    return np.where(twin >= 0, twin // 4, -1).reshape(-1, 4)
-
-
-def boundary_loops(Q):
-    """The boundary as a list of closed loops of vertex indices, the mesh on their left.
-
-    The first vertex is not repeated.  A hole (a removed face) gives a loop of its own.
-
-    Paper: Sec. 6.3 (boundary).
-    """
-    Q = _check_quads(Q)
-    half = np.flatnonzero(twins(Q) < 0)
-    start, end = Q.ravel()[half], np.roll(Q, -1, axis=1).ravel()[half]
-    vertex, count = np.unique(start, return_counts=True)
-    if (count > 1).any():
-        raise ValueError(
-            f"two boundary loops touch at vertex {vertex[count > 1][0]}: not a manifold"
-        )
-    following = dict(zip(start.tolist(), end.tolist(), strict=True))
-    loops = []
-    while following:
-        loop = [next(iter(following))]
-        while (after := following.pop(loop[-1])) != loop[0]:
-            loop.append(after)
-        loops.append(np.array(loop))
-    return loops
 
 
 # --- labelling --------------------------------------------------------------------------
@@ -249,39 +158,20 @@ def label(Q):
 
     Paper: Sec. 4.1 (labels; beyond the paper).
     """
-    Q = _check_quads(Q).copy()
-    one, two = _pairs(Q).T
+    Q = check_quads(Q).copy()
+    one, two = pairs(Q).T
     start = Q.ravel()
-    swap, loop = _two_colour(len(Q), one // 4, two // 4, start[one] == start[two])
+    swap, loop = two_colour(len(Q), one // 4, two // 4, start[one] == start[two])
     if loop is not None:
         raise ValueError(f"the mesh is not orientable: see the loop of faces {loop}")
     Q[swap] = Q[swap][:, [0, 3, 2, 1]]
     twin = twins(Q)
     one = np.flatnonzero(twin >= 0)
-    turn, loop = _two_colour(len(Q), one // 4, twin[one] // 4, (one - twin[one]) % 2 == 1)
+    turn, loop = two_colour(len(Q), one // 4, twin[one] // 4, (one - twin[one]) % 2 == 1)
     if loop is not None:
         raise ValueError("no consistent u/v labelling: " + _obstruction(Q, loop))
     Q[turn] = np.roll(Q[turn], 1, axis=1)
     return Q
-
-
-def _two_colour(count, a, b, differ):
-    """Booleans x with x[a] xor x[b] = differ, and None; or (None, a loop that forbids it).
-
-    Solvable exactly when the double cover with the nodes i and i + count is disconnected.
-    """
-    rows = np.concatenate([a, a + count])
-    cols = np.concatenate([b + count * differ, b + count * ~differ])
-    graph = coo_array((np.ones(rows.size, dtype=np.int8), (rows, cols)), shape=(2 * count,) * 2)
-    _, cover = connected_components(graph, directed=False)
-    stuck = np.flatnonzero(cover[:count] == cover[count:])
-    if stuck.size:
-        _, parent = breadth_first_order(graph.tocsr(), stuck[0], directed=False)
-        path = [int(stuck[0] + count)]
-        while path[-1] != stuck[0]:
-            path.append(int(parent[path[-1]]))
-        return None, [node % count for node in path[:-1]]
-    return cover[:count] > cover[count:], None
 
 
 def _obstruction(Q, loop):
@@ -353,27 +243,6 @@ def _chains(edges):
 # --- derived meshes ---------------------------------------------------------------------
 
 
-def _fans(Q):
-    """The outgoing half-edges of interior vertices, counter-clockwise: {valence: (k, valence)}."""
-    twin = twins(Q)
-    turn = twin[np.arange(twin.size).reshape(-1, 4)[:, [3, 0, 1, 2]].ravel()]
-    valence = np.bincount(Q.ravel())
-    inner = valence > 0
-    inner[Q.ravel()[twin < 0]] = inner[np.roll(Q, -1, axis=1).ravel()[twin < 0]] = False
-    start = np.full(valence.size, -1)
-    start[Q.ravel()[::-1]] = np.arange(Q.size)[::-1]
-    fans = {}
-    for k in np.unique(valence[inner]):
-        fan = [start[np.flatnonzero(inner & (valence == k))]]
-        for _ in range(k - 1):
-            fan.append(turn[fan[-1]])
-            if (again := fan[-1] == fan[0]).any():
-                vertex = Q.ravel()[fan[0][np.argmax(again)]]
-                raise ValueError(f"the faces at vertex {vertex} form two fans: not a manifold")
-        fans[int(k)] = np.stack(fan, axis=1)
-    return fans
-
-
 def checkerboard(V, Q):
     """The checkerboard pattern of a quad mesh by mid-edge subdivision: `Checkerboard`.
 
@@ -389,9 +258,9 @@ def checkerboard(V, Q):
     owner = np.where((twin >= 0) & (twin < half), twin, half)
     kept, edge = np.unique(owner, return_inverse=True)
     ends = np.stack([Q.ravel(), np.roll(Q, -1, axis=1).ravel()], axis=1)[kept]
-    fans = _fans(Q)
-    white = edge[fans.pop(4)] if 4 in fans else np.empty((0, 4), dtype=np.int64)
-    others = [polygon for fan in fans.values() for polygon in edge[fan]]
+    around = fans(Q)
+    white = edge[around.pop(4)] if 4 in around else np.empty((0, 4), dtype=np.int64)
+    others = [polygon for fan in around.values() for polygon in edge[fan]]
     return Checkerboard(V[ends].mean(axis=1), edge.reshape(-1, 4), white, others)
 
 
@@ -410,10 +279,10 @@ def diagonal_meshes(Q):
         raise ValueError("the faces do not agree on u and v: call mesh.label first")
     Q = np.asarray(Q)
     start, end = Q.ravel(), np.roll(Q, -1, axis=1).ravel()
-    colour, loop = _two_colour(Q.max() + 1, start, end, np.ones(start.size, dtype=bool))
+    colour, loop = two_colour(Q.max() + 1, start, end, np.ones(start.size, dtype=bool))
     if loop is not None:
         raise ValueError(f"the vertices have no chessboard colouring: see the odd loop {loop}")
-    fan = _fans(Q).get(4, np.empty((0, 4), dtype=np.int64))
+    fan = fans(Q).get(4, np.empty((0, 4), dtype=np.int64))
     # Start where the outgoing edge is a u-edge that leaves v1 or v2, i.e. points along +u or -u:
     first = np.argmax(fan % 2 == 1, axis=1)
     fan = np.take_along_axis(fan, (first[:, None] + np.arange(4)) % 4, axis=1)

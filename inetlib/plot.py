@@ -96,10 +96,12 @@ def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, **options):
 
 
 def net(ax, V, Q, families=("u", "v"), width=1.1):
-    """The named families of mesh curves of a planar net, each in its colour.
+    """The named families (of u, v, d1, d2) of mesh curves of a planar net, each in its colour.
 
     Paper: Figs. 1-13 (drawing).
     """
+    if unknown := set(families) - set(COLOURS):
+        raise ValueError(f"no family {sorted(unknown)}: there are u, v, d1 and d2")
     for name, lines in mesh.polylines(Q)._asdict().items():
         if name in families:
             curves(ax, [V[line] for line in lines], COLOURS[name], width)

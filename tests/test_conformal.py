@@ -408,3 +408,9 @@ def test_three_points_must_be_distinct(bad):
         conformal.moebius_through(bad, [0, 1, 2])
     with pytest.raises(ValueError, match="three distinct"):
         conformal.moebius_through([0, 1, 2], bad)
+
+
+@pytest.mark.parametrize("image", [conformal.inversion_circle, conformal.square_conic])
+def test_a_line_without_a_direction_is_refused(image):
+    with pytest.raises(ValueError, match="direction = 0"):
+        image(1 + 1j, 0)

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from inetlib import measure, mesh
 
-
 # --- meshes to test on, built without the library -----------------------------------------
 
 

@@ -318,3 +318,9 @@ def test_the_axes_see_the_whole_scene(ax):
     )
     xy = plot.camera(0.3, 0.4)(np.concatenate([V, [[5, 5, 5]]]))[0]
     np.testing.assert_allclose(ax.dataLim.get_points(), [xy.min(axis=0), xy.max(axis=0)])
+
+
+def test_a_family_that_does_not_exist_is_refused():
+    _, axes = plot.canvas([["A"]], 2, 2)
+    with pytest.raises(ValueError, match=r"no family \['w'\]"):
+        plot.net(axes["A"], np.zeros((4, 3)), [[0, 1, 2, 3]], families=("u", "w"))

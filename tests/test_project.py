@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-MODULES = ["conformal", "measure", "mesh", "parallelogram", "plot", "publish"] + [
+MODULES = ["adjacency", "conformal", "measure", "mesh", "parallelogram", "plot", "publish"] + [
     f"drawings.{path.stem}" for path in sorted((ROOT / "inetlib/drawings").glob("fig*.py"))
 ]
 
