@@ -168,8 +168,8 @@ def quality(V, Q):
     if not twice_area.all():
         raise ValueError(f"face {np.argmin(twice_area)} has no area: its diagonals are parallel")
     normal /= twice_area[:, None]
-    neighbours = mesh.face_neighbours(Q)
-    around = np.where(neighbours[:, :, None] >= 0, normal[neighbours], 0).sum(axis=1)
+    or_zero = np.concatenate([normal, np.zeros((1, 3))])  # number -1 is no neighbour
+    around = sum(or_zero[faces] for faces in mesh.face_neighbours(Q).T)
     flipped = np.flatnonzero(np.einsum("ij,ij->i", normal, around) < 0)
     one, two = _length(m13, "a medial line"), _length(m24, "a medial line")
     V, Q = np.asarray(V, dtype=float), np.asarray(Q)
