@@ -8,7 +8,7 @@ Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
 
 from importlib.metadata import version
 
-from . import adjacency, conformal, measure, mesh, parallelogram
+from . import adjacency, conformal, measure, mesh, parallelogram, surfaces
 
-__all__ = ["adjacency", "conformal", "measure", "mesh", "parallelogram"]
+__all__ = ["adjacency", "conformal", "measure", "mesh", "parallelogram", "surfaces"]
 __version__ = version("inetlib")

@@ -1,0 +1,202 @@
+"""Parametrised surfaces: kinematic ones, isothermal ones, and profiles of revolution.
+
+A `Surface` is a function of two parameters; it takes numbers, arrays or sympy symbols.  A
+`Profile` is the meridian of a surface of revolution, two callables of one parameter; its
+Mercator coordinate w = int ds / radius makes (angle, w) isothermal.
+
+Paper: Sec. 5, Sec. 5.2.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.differentiate import derivative
+from scipy.interpolate import make_interp_spline
+
+from .parallelogram import _lib
+
+
+class Surface(NamedTuple):
+    """A surface: `coordinates(u, v)` returns x, y, z; numbers, arrays or sympy symbols."""
+
+    name: str
+    coordinates: object
+
+    def point(self, u, v):
+        """Points (..., 3) at the parameters u, v (numbers or arrays that broadcast)."""
+        return np.stack(np.broadcast_arrays(*self.coordinates(u, v)), axis=-1)
+
+
+class Profile(NamedTuple):
+    """A meridian: radius(t) > 0 and height(t) on start <= t <= stop, callables of arrays.
+
+    t is any regular parameter (radius' and height' never vanish together).
+    """
+
+    radius: object
+    height: object
+    start: float
+    stop: float
+
+
+# --- isothermal parametrisations: E = G, F = 0 --------------------------------------------
+
+
+def _revolution(name, radius, height):
+    """(f(v) cos u, f(v) sin u, g(v)) with f and g given as functions of (v, library)."""
+
+    def coordinates(u, v):
+        xp = _lib(u, v)
+        f, g = radius(v, xp), height(v, xp)
+        return f * xp.cos(u), f * xp.sin(u), g + 0 * u
+
+    return Surface(name, coordinates)
+
+
+CYLINDER = _revolution("cylinder", lambda v, xp: 1 + 0 * v, lambda v, xp: v)
+SPHERE = _revolution("sphere", lambda v, xp: 1 / xp.cosh(v), lambda v, xp: xp.tanh(v))
+CATENOID = _revolution("catenoid", lambda v, xp: xp.cosh(v), lambda v, xp: v)
+
+
+def _helicoid(u, v):
+    xp = _lib(u, v)
+    return xp.sinh(v) * xp.sin(u), -xp.sinh(v) * xp.cos(u), u + 0 * v
+
+
+HELICOID = Surface("helicoid", _helicoid)
+
+
+def conjugate(t):
+    """The minimal surface cos(t) catenoid + sin(t) helicoid, isothermal for every t (radians).
+
+    Paper: Sec. 5.2 (conjugate minimal surfaces).
+    """
+
+    def coordinates(u, v):
+        xp = _lib(u, v, t)
+        pairs = zip(CATENOID.coordinates(u, v), HELICOID.coordinates(u, v), strict=True)
+        return tuple(xp.cos(t) * c + xp.sin(t) * h for c, h in pairs)
+
+    return Surface("conjugate minimal surface", coordinates)
+
+
+# --- surfaces of revolution from any profile ----------------------------------------------
+
+
+def slope(profile, t):
+    """(radius'(t), height'(t)) by adaptive finite differences that stay on [start, stop].
+
+    t: array of parameters on the profile.  About 1e-10 relative for smooth callables.
+
+    Paper: Eq. (14).
+    """
+    t = np.asarray(t, dtype=float)
+    reach = (profile.stop - profile.start) / 20
+    side = np.where(t - profile.start < reach, 1, np.where(profile.stop - t < reach, -1, 0))
+    options = {"initial_step": reach / 2, "step_direction": side, "order": 8}
+    parts = (profile.radius, profile.height)
+    return tuple(derivative(f, t, **options).df for f in parts)
+
+
+def mercator(profile):
+    """The Mercator coordinate of a meridian and its inverse: two callables (w_of_t, t_of_w).
+
+    w(t) = int ds / radius from profile.start, for w from 0 to w(stop); both take arrays.  (angle, w) is an isothermal
+    parametrisation of the surface of revolution.  ValueError when the radius vanishes or the
+    parameter is not regular somewhere on the profile.
+
+    Paper: Sec. 5.2 (isothermal; beyond the paper for general profiles).
+    """
+    check_profile(profile)
+
+    t = np.linspace(profile.start, profile.stop, 2001)
+    rate = make_interp_spline(t, np.hypot(*slope(profile, t)) / profile.radius(t), k=7)
+    integral = rate.antiderivative()
+    low = integral(profile.start)
+
+    def t_of_w(w):
+        guess = np.interp(w, integral(t) - low, t)
+        for _ in range(4):  # Newton
+            step = (integral(guess) - low - w) / rate(guess)
+            guess = np.clip(guess - step, profile.start, profile.stop)
+        return guess
+
+    return lambda t: integral(t) - low, t_of_w
+
+
+def check_profile(profile):
+    """The profile itself, or a ValueError: an empty interval, a radius that is not positive.
+
+    Paper: Eq. (14).
+    """
+    if not (np.isfinite([profile.start, profile.stop]).all() and profile.start < profile.stop):
+        raise ValueError(
+            f"the profile runs from {profile.start} to {profile.stop}: start < stop wanted"
+        )
+    t = np.linspace(profile.start, profile.stop, 257)
+    radius, height = (np.broadcast_to(f(t), t.shape) for f in (profile.radius, profile.height))
+    if not (np.isfinite(radius) & np.isfinite(height)).all():
+        raise ValueError("the profile is not finite everywhere between start and stop")
+    if not (radius > 0).all():
+        worst = np.argmin(radius)
+        raise ValueError(
+            f"radius = {radius[worst]:.6g} at t = {t[worst]:.6g}: it must stay positive, "
+            "shorten the profile so that it does not reach the axis"
+        )
+    if not np.all(np.hypot(np.diff(radius), np.diff(height)) > 0):
+        raise ValueError("the profile stands still somewhere: radius' and height' vanish together")
+    return profile
+
+
+def revolve(profile, angle, t):
+    """Points (..., 3) of the surface of revolution at the angle and the meridian parameter t.
+
+    Paper: Eq. (14).
+    """
+    radius, height = profile.radius(t), profile.height(t)
+    points = radius * np.cos(angle), radius * np.sin(angle), height + 0 * np.asarray(angle)
+    return np.stack(np.broadcast_arrays(*points), axis=-1)
+
+
+def sphere_profile(radius=1.0, start=-1.2, stop=1.2):
+    """A sphere by latitude t (radians), between two parallels.
+
+    Paper: Sec. 5.3, Fig. 11.
+    """
+    return Profile(lambda t: radius * np.cos(t), lambda t: radius * np.sin(t), start, stop)
+
+
+def torus_profile(major=2.0, minor=0.8, start=-np.pi, stop=np.pi):
+    """A torus by the angle t around its tube, major > minor > 0.
+
+    Paper: Sec. 5.3 (beyond the paper).
+    """
+    if not major > minor > 0:
+        raise ValueError(f"major = {major}, minor = {minor}: major > minor > 0 is wanted")
+    return Profile(lambda t: major + minor * np.cos(t), lambda t: minor * np.sin(t), start, stop)
+
+
+def cone_profile(gamma, start=0.2, stop=2.0):
+    """A cone of half vertex angle gamma (radians) by the distance t from its vertex.
+
+    Paper: Sec. 5.3 (cone).
+    """
+    if not 0 < gamma < np.pi / 2:
+        raise ValueError(f"gamma = {gamma}: half the vertex angle lies between 0 and pi/2")
+    return Profile(lambda t: t * np.sin(gamma), lambda t: t * np.cos(gamma), start, stop)
+
+
+def catenoid_profile(start=-1.2, stop=1.2):
+    """A catenoid of unit waist by its height t.
+
+    Paper: Sec. 5.2.
+    """
+    return Profile(lambda t: np.cosh(t), lambda t: t + 0.0, start, stop)
+
+
+def vase_profile(start=0.0, stop=3.2):
+    """A vase with a belly, a neck and a lip, by its height t.
+
+    Paper: Fig. 11.
+    """
+    return Profile(lambda t: 0.72 + 0.33 * np.sin(1.9 * t + 0.25), lambda t: t + 0.0, start, stop)
