@@ -101,7 +101,8 @@ def slope(profile, t):
 def mercator(profile):
     """The Mercator coordinate of a meridian and its inverse: two callables (w_of_t, t_of_w).
 
-    w(t) = int ds / radius from profile.start, for w from 0 to w(stop); both take arrays.  (angle, w) is an isothermal
+    w(t) = int ds / radius from profile.start, for w from 0 to w(stop); both take arrays.
+    (angle, w) is an isothermal
     parametrisation of the surface of revolution.  ValueError when the radius vanishes or the
     parameter is not regular somewhere on the profile.
 
