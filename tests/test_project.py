@@ -14,9 +14,11 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
-MODULES = ["adjacency", "conformal", "measure", "mesh", "parallelogram", "plot", "publish"] + [
-    f"drawings.{path.stem}" for path in sorted((ROOT / "inetlib/drawings").glob("fig*.py"))
-]
+MODULES = sorted(
+    ".".join(path.relative_to(ROOT / "inetlib").with_suffix("").parts)
+    for path in (ROOT / "inetlib").rglob("*.py")
+    if not path.name.startswith("_")
+)
 
 
 def tracked():
@@ -37,7 +39,12 @@ def public_functions():
     for name in MODULES:
         module = importlib.import_module(f"inetlib.{name}")
         for key, value in vars(module).items():
-            if not key.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+            own = getattr(value, "__module__", "") == module.__name__
+            if (
+                own
+                and not key.startswith("_")
+                and (inspect.isroutine(value) or inspect.isclass(value))
+            ):
                 yield f"{name}.{key}", value
 
 

@@ -1,0 +1,144 @@
+"""Fig. 7: a planar sheared grid and developable surfaces that it is bent into."""
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from .. import conformal, developable, mesh, plot, publish
+
+WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
+HIGH = 8.2  # columns are as wide as a panel is high
+GEODESIC = ((0, 0, 0), (0.3, -0.8, 0.1), (0.6, -0.8, 0.3), (0.9, 0, 0.4))
+EDITED = ((0, 0, 0), (0.1, -1, -0.1), (0.8, -1, 0.6), (0.9, 0, 0.4))
+LIGHT = (-0.3, -1, 0.5)
+TITLES = {
+    "A": "$k=0$: sheared grid in the plane",
+    "B": "$k=1/4$",
+    "C": "$k=1/2$",
+    "D": "$k=3/4$",
+    "E": "$k=1$",
+    "F": "rotational cone",
+    "G": "Bezier geodesic",
+    "H": "moved points",
+}
+
+
+def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth=-90, elevation=20):
+    """One net in the plane, rolled up in four steps, on a cone and along a space curve.
+
+    theta, theta0: angles of the net, degrees; cells: faces each way, those along u close
+    around the cylinder of curvature k = 1; geodesic, edited: control points, scaled to the
+    length of the diagonal of the net, which becomes that curve; azimuth, elevation: the
+    camera, degrees.  Returns a `publish.Drawing`.
+
+    Paper: Fig. 7.
+    """
+    asked = np.radians([theta, theta0])
+    z = conformal.sheared_grid(*asked, cells, cells, edge=2 * np.pi / cells)
+    z = z - z.mean()
+    maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")}
+    maps |= {"F": _cone(z), "G": _along(z, geodesic)[0]}
+    maps["H"] = _along(z, edited)[0]
+    figure, axes = plot.canvas(_columns(), 7.6, 3.6)
+    view = plot.camera(*np.radians([azimuth, elevation]))
+    data, claims, nets = _stages(maps, z, asked)
+    for name, bend in maps.items():
+        _sheet(axes[name], view, bend, z)
+        plot.panel(axes[name], name, TITLES[name])
+    for name, points in (("G", geodesic), ("H", edited)):
+        _polygon(axes[name], view, _along(z, points)[1])
+    _same_scale(axes)
+    parameters = {"theta": theta, "theta0": theta0, "cells": cells, "azimuth": azimuth}
+    parameters |= {"elevation": elevation, "geodesic": [list(p) for p in geodesic]}
+    parameters["edited"] = [list(p) for p in edited]
+    return publish.Drawing(
+        "fig07", figure, "inetlib.drawings.fig07.draw", parameters, data, nets, claims
+    )
+
+
+def _stages(maps, z, asked):
+    """The bent nets; how far their chords are off, and the lengths of edges on the surface."""
+    domain, Q = conformal.quads(z)
+    data, claims = {"domain": domain}, {}
+    for name, bend in maps.items():
+        data[f"net_{name}"] = bend(z).reshape(-1, 3)
+        off = max(publish.deviations([(data[f"net_{name}"], Q, *asked)]))
+        claims[f"chords_{name}_max_deviation_deg"] = round(off, 6) + 0.0
+        stretch = [
+            np.linalg.norm(developable.tangent(bend, z, edge / abs(edge)), axis=-1)
+            for edge in (z[1, 0] - z[0, 0], z[0, 1] - z[0, 0])
+        ]
+        claims[f"stretch_{name}"] = round(float(np.abs(np.array(stretch) - 1).max()), 9) + 0.0
+    return data, claims, [(domain, Q, *asked)]
+
+
+def _rolling(curvature):
+    """A wall in front of the camera that curls away from it."""
+    return lambda z: developable.roll(z, curvature)[..., [0, 2, 1]]
+
+
+def _cone(z):
+    """The net below an apex, on a cone that it closes by three quarters or so."""
+    apex = 1j * (z.imag.max() + 1.5)
+    span = np.ptp(np.angle((z - apex) * 1j))
+    gamma = np.pi - np.arcsin(span / (2 * np.pi) / 0.8)
+    return lambda z: developable.cone(z, gamma, apex, direction=-1j)
+
+
+def _along(z, points):
+    """The map that takes the diagonal of the net to a Bezier curve, and its control points."""
+    start, chord = z[0, 0], z[-1, -1] - z[0, 0]
+    margin = 0.04 * abs(chord)
+    points = np.array(points, dtype=float)
+    points *= (abs(chord) + 2 * margin) / developable.arc_length(developable.bezier(points)).length
+    curve = developable.arc_length(developable.bezier(points))
+    turn = np.conj(chord) / abs(chord)
+    return lambda z: developable.rectifying((z - start) * turn + margin, curve), points
+
+
+def _sheet(ax, view, bend, z):
+    """Black quads dark, the rest light, u- and v-curves, and the diagonal of the net."""
+    V, Q = conformal.quads(z)
+    board = mesh.checkerboard(V, Q)
+    flat, black = np.concatenate([V, board.V]), board.black + len(V)
+    points = bend(flat[:, 0] + 1j * flat[:, 1])
+    rim = np.bincount(Q.ravel())[Q] < 4  # the white quads leave triangles along the rim
+    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)[rim]
+    light = np.concatenate([board.white + len(V), corners])
+    shades = [plot.shade(points, black, to_rgb("#6f8fbf"), LIGHT, 0.4)]
+    shades += [plot.shade(points, light, light=LIGHT, depth=0.25)]
+    lines = [
+        (bend(_halves(line)), plot.COLOURS[name], 0.7)
+        for name, family in (("u", z.T), ("v", z))
+        for line in family
+    ]
+    lift = 0.1 * view(np.eye(3))[1]  # in front, at the same place of the picture
+    diagonal = bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z)))
+    lines.append((diagonal + lift, plot.INK, 2.2))
+    plot.scene(ax, view, points, np.concatenate([black, light]), np.concatenate(shades), lines)
+
+
+def _halves(line):
+    """A polyline with the midpoints of its edges."""
+    return np.insert(line, np.arange(1, len(line)), (line[1:] + line[:-1]) / 2)
+
+
+def _polygon(ax, view, points):
+    flat = view(points)[0]
+    ax.plot(*flat.T, "o--", color=plot.INK, ms=3.5, lw=0.8, zorder=6)
+    ax.update_datalim(flat)
+
+
+def _columns():
+    return [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
+
+
+def _same_scale(axes):
+    """All panels of the same scale: they are equally high, and so are their limits."""
+    columns = WIDTHS[0] | WIDTHS[1]
+    sizes = [(ax.dataLim.height, ax.dataLim.width * HIGH / columns[k]) for k, ax in axes.items()]
+    height = 1.1 * np.max(sizes)
+    for ax in axes.values():
+        ax.set_aspect("equal", adjustable="datalim")
+        x, y = (ax.dataLim.p0 + ax.dataLim.p1) / 2
+        ax.set_xlim(x - 0.1, x + 0.1, auto=True)  # to be widened to the panel
+        ax.set_ylim(y - height / 2, y + height / 2, auto=True)

@@ -1,0 +1,62 @@
+"""Fig. 10: an I-net on a part of the unit sphere and its stereographic image in the plane."""
+
+import numpy as np
+
+from .. import moebius, plot, publish, surfaces
+from . import _isothermal
+
+
+def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
+    """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
+
+    around: steps of a full turn; rows: of the net; top: its uppermost parallel, in steps
+    above the equator; azimuth, elevation: the camera, degrees.  Returns a `publish.Drawing`.
+
+    Paper: Fig. 10.
+    """
+    figure, axes = plot.canvas([["A", "A'"]], 6.6, 3.2)
+    step = 2 * np.pi / around
+    z = _isothermal.domain(rows, around, step, 1j * top * step)
+    line = _isothermal.refined(z[:, around * 7 // 10])
+    V, Q = _isothermal.sample(surfaces.SPHERE, z)
+    curve = surfaces.SPHERE.point(line.real, line.imag)
+    flat, flat_curve = moebius.stereographic(V), moebius.stereographic(curve)
+    W = np.stack([flat.real, flat.imag, 0 * flat.real], axis=1)
+    _sphere(axes["A"], plot.camera(*np.radians([azimuth, elevation])), V, Q, curve)
+    _plane(axes["A'"], W, Q, flat_curve)
+    plot.panel(axes["A"], "A", "on the unit sphere")
+    plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
+    claims = {}
+    for name, points in (("sphere", V), ("plane", W)):
+        off = max(publish.deviations([(points, Q, *_isothermal.ANGLES)]))
+        claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
+    parameters = {"around": around, "rows": rows, "top": top}
+    parameters |= {"azimuth": azimuth, "elevation": elevation}
+    return publish.Drawing(
+        "fig10",
+        figure,
+        "inetlib.drawings.fig10.draw",
+        parameters,
+        {"sphere": V, "plane": W},
+        [(np.stack([z.real.ravel(), z.imag.ravel(), 0 * W[:, 0]], 1), Q, *_isothermal.ANGLES)],
+        claims,
+    )
+
+
+def _sphere(ax, view, V, Q, curve):
+    lines = _isothermal.coloured(V, Q, {"v": 0.7, "u": 0.7})
+    lines.append((curve, plot.COLOURS["u"], 2.6))
+    plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
+    outline = np.exp(2j * np.pi * np.arange(181) / 180)
+    plot.curves(ax, [outline], plot.GREY, 0.7, zorder=0)
+    north = view(np.array([[0, 0, 1.0]]))[0][0]
+    ax.plot(*north, "o", color=plot.INK, ms=4, zorder=7)
+    ax.text(north[0] + 0.06, north[1] + 0.02, "$N$", ha="left", va="center", zorder=7)
+
+
+def _plane(ax, V, Q, curve):
+    plot.polygons(ax, V, Q, plot.PALE, zorder=0)
+    plot.net(ax, V, Q, width=0.7)
+    plot.curves(ax, [curve], plot.COLOURS["u"], 2.6)
+    equator = np.exp(2j * np.pi * np.arange(181) / 180)
+    plot.curves(ax, [equator], plot.INK, 0.8, (0, (4, 3)), zorder=5)

@@ -1,0 +1,214 @@
+"""`view`: pictures where pyvista and OpenGL are at hand, clear sentences where they are not."""
+
+import io
+import os
+import subprocess
+import sys
+import types
+import warnings
+
+import numpy as np
+import pytest
+from matplotlib.colors import rgb_to_hsv, to_rgb
+from matplotlib.image import imread
+
+from inetlib import mesh, plot, view
+
+V = np.array([[i + 0.3 * j, j, 0.2 * i * j] for i in range(4) for j in range(4)], dtype=float)
+Q = mesh.grid_quads(3, 3)
+ABOVE = (-np.pi / 2, np.pi / 2)  # x to the right, y up
+
+
+@pytest.fixture
+def fresh():
+    """`available` forgets what it found, before and after."""
+    view.available.cache_clear()
+    yield
+    view.available.cache_clear()
+
+
+@pytest.fixture
+def pyvista():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of other people's packages
+        try:
+            return view._pyvista()
+        except ImportError as error:
+            pytest.skip(str(error))
+
+
+@pytest.fixture
+def opengl(pyvista):
+    works, sentence = view.available()
+    if not works:
+        pytest.skip(sentence)
+
+
+# --- without pyvista or OpenGL ------------------------------------------------------------
+
+
+def test_importing_view_imports_neither_pyvista_nor_vtk():
+    code = (
+        "import sys, inetlib.view as v; sys.exit(any(m[:3] in ('vtk', 'pyv') for m in sys.modules))"
+    )
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_without_pyvista_the_message_names_the_extra(monkeypatch, fresh):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    works, sentence = view.available()
+    assert not works
+    for call in (view.scene, view.picture):
+        with pytest.raises(ImportError, match="install the extra `view`") as caught:
+            call(V, Q)
+        assert str(caught.value) == sentence
+
+
+@pytest.mark.parametrize("end", ["raise SystemExit(1)", "import os; os.abort()", "1 / 0"])
+def test_a_trial_that_fails_or_dies_becomes_a_sentence(monkeypatch, fresh, end):
+    monkeypatch.setitem(sys.modules, "pyvista", types.ModuleType("pyvista"))
+    monkeypatch.setattr(view, "PROBE", end)
+    works, sentence = view.available()
+    assert not works
+    assert "libegl1 and libgl1-mesa-dri" in sentence and "inetlib.plot" in sentence
+    with pytest.raises(RuntimeError, match="cannot draw off screen here"):
+        view.picture(V, Q)
+
+
+def test_a_trial_that_hangs_becomes_a_sentence(monkeypatch, fresh):
+    def hang(command, timeout, **_):
+        raise subprocess.TimeoutExpired(command, timeout)
+
+    monkeypatch.setitem(sys.modules, "pyvista", types.ModuleType("pyvista"))
+    monkeypatch.setattr(subprocess, "run", hang)
+    works, sentence = view.available()
+    assert not works
+    assert "two minutes" in sentence
+
+
+def test_the_trial_is_made_once(monkeypatch, fresh):
+    calls = []
+
+    def run(command, **_):
+        calls.append(command)
+        return types.SimpleNamespace(returncode=0)
+
+    monkeypatch.setitem(sys.modules, "pyvista", types.ModuleType("pyvista"))
+    monkeypatch.setattr(subprocess, "run", run)
+    assert view.available() == view.available() == (True, "pyvista draws off screen here")
+    assert len(calls) == 1
+
+
+@pytest.mark.parametrize(
+    ("platform", "display", "before", "after"),
+    [
+        ("linux", None, None, "vtkEGLRenderWindow"),
+        ("linux", "", None, "vtkEGLRenderWindow"),
+        ("linux", None, "vtkOSOpenGLRenderWindow", "vtkOSOpenGLRenderWindow"),
+        ("linux", ":0", None, None),
+        ("darwin", None, None, None),
+        ("win32", None, None, None),
+    ],
+)
+def test_egl_is_asked_for_on_linux_without_a_display(monkeypatch, platform, display, before, after):
+    name = "VTK_DEFAULT_OPENGL_WINDOW"
+    monkeypatch.setitem(sys.modules, "pyvista", types.ModuleType("pyvista"))
+    monkeypatch.setattr(sys, "platform", platform)
+    for key, value in (("DISPLAY", display), (name, before)):
+        monkeypatch.setenv(key, value or "")  # so that monkeypatch restores it
+        if value is None:
+            monkeypatch.delenv(key)
+    view._pyvista()
+    assert os.environ.get(name) == after
+
+
+@pytest.mark.parametrize(
+    ("kernel", "session", "display", "live"),
+    [
+        (True, True, True, True),
+        (True, False, True, False),  # nbclient, nbmake
+        (True, True, False, False),
+        (False, False, True, True),
+        (False, False, False, False),
+    ],
+)
+def test_show_is_live_for_a_person_with_a_display(monkeypatch, kernel, session, display, live):
+    shown = types.SimpleNamespace(show=lambda: "live")
+    monkeypatch.setattr(view, "scene", lambda *_, live=False: shown if live else 1 / 0)
+    still = np.full((view.SIZE[1], view.SIZE[0], 3), 77, dtype=np.uint8)
+    monkeypatch.setattr(view, "picture", lambda *_: still)
+    monkeypatch.setattr(view, "_headless", lambda: not display)
+    monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
+    if not session:
+        monkeypatch.delenv("JPY_SESSION_NAME")
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    if not kernel:
+        monkeypatch.delitem(sys.modules, "ipykernel")
+    result = view.show(V, Q)
+    assert (result == "live") is live
+    assert view.show(V, Q, live=True) == "live"
+    fixed = view.show(V, Q, live=False)
+    decoded = imread(io.BytesIO(fixed.data), format="png")
+    np.testing.assert_allclose(decoded[..., :3] * 255, still, atol=1e-4)
+
+
+# --- with both ----------------------------------------------------------------------------
+
+
+def share(image, colour):
+    """The part of the pixels with the hue of a saturated colour, however shaded."""
+    hsv = rgb_to_hsv(image / 255)
+    near = np.abs(hsv[..., 0] - rgb_to_hsv(to_rgb(colour))[0]) < 0.02
+    return np.mean(near & (hsv[..., 1] > 0.5))
+
+
+def test_a_picture_is_white_around_a_net_in_four_colours(opengl):
+    image = view.picture(V, Q)
+    assert image.shape == (view.SIZE[1], view.SIZE[0], 3) and image.dtype == np.uint8
+    corners = image[[0, 0, -1, -1], [0, -1, 0, -1]]
+    np.testing.assert_array_equal(corners, 255)
+    for colour in plot.COLOURS.values():
+        assert share(image, colour) > 0.002
+    np.testing.assert_array_equal(view.picture(V, Q), image)
+
+
+def test_an_empty_family_is_not_drawn_and_colours_can_be_chosen(opengl):
+    families = mesh.polylines(Q)._replace(d1=[], v=[])
+    image = view.picture(V, Q, families, {"u": "#ff00ff"}, width=0.01)
+    assert share(image, "#ff00ff") > 0.01 and share(image, plot.COLOURS["d2"]) > 0.01
+    for name in ("u", "v", "d1"):
+        assert share(image, plot.COLOURS[name]) < 0.0005  # blends of the others
+
+
+def test_curves_may_be_points_as_well_as_vertex_indices(opengl):
+    indices = mesh.polylines(Q)
+    points = mesh.Families(*([V[line] for line in lines] for lines in indices))
+    np.testing.assert_array_equal(view.picture(V, Q, points), view.picture(V, Q, indices))
+
+
+@pytest.mark.parametrize("stretch", [1, 3])
+def test_the_net_fills_the_picture_in_its_proportions_and_the_right_way_round(opengl, stretch):
+    flat = V * [stretch, 1, 0]
+    corner = mesh.Families([flat[[15, 11]]], [], [], [])  # right end, uppermost edge
+    image = view.picture(flat, Q, corner, {"face": "black"}, width=0.01, view=ABOVE)
+    y, x = np.nonzero((image < 250).any(axis=-1))
+    wide, high = np.ptp(x) + 1, np.ptp(y) + 1
+    assert wide / high == pytest.approx(3.9 * stretch / 3, rel=0.03)
+    assert 0.9 < max(wide / view.SIZE[0], high / view.SIZE[1]) < 0.97
+    hue = rgb_to_hsv(image / 255)
+    row, column = np.argwhere((hue[..., 1] > 0.5) & (hue[..., 2] > 0.2)).mean(axis=0)
+    # From (3.9, 3) to (2.9, 3), of a net of width 3.9 and height 3 from (0, 0).
+    assert (row - y.min()) / high < 0.05
+    assert (column - x.min()) / wide == pytest.approx((3.9 + 2.9) / 7.8, abs=0.02)
+
+
+def test_a_mesh_that_is_none_is_refused_before_anything_is_drawn(pyvista):
+    with pytest.raises(ValueError, match="face 8 names vertex 15"):
+        view.picture(V[:15], Q)
+
+
+def test_a_scene_is_a_plotter_with_one_actor_a_family_and_the_faces(opengl, pyvista):
+    plotter = view.scene(V, Q)
+    assert isinstance(plotter, pyvista.Plotter)
+    assert len(plotter.actors) == 5
+    plotter.close()
