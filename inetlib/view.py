@@ -18,7 +18,7 @@ from matplotlib.image import imsave
 
 from . import mesh, plot
 
-SIZE = (720, 560)  # pixels
+SIZE = (600, 460)  # pixels
 COLOURS = plot.COLOURS | {"face": plot.PALE}
 MISSING = "pyvista is not installed: install the extra `view`, pip install -e '.[view]'"
 NO_OPENGL = (
@@ -124,7 +124,7 @@ def _polylines(pyvista, V, lines):
 
 
 def picture(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5)):
-    """The `scene` drawn off screen: an RGB array (560, 720, 3) of bytes.
+    """The `scene` drawn off screen: an RGB array (460, 600, 3) of bytes.
 
     Paper: Figs. 7-13 (scenes).
     """

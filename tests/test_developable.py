@@ -71,6 +71,27 @@ def test_the_first_fundamental_form_is_that_of_the_plane(bend):
     assert np.abs(form).max() < 1e-9
 
 
+@given(st.floats(-3, 3), st.floats(0.35, 2.8), st.floats(-4, 4))
+def test_the_form_is_constant_through_the_families_of_cylinders_and_cones(curvature, gamma, turn):
+    direction = np.exp(1j * turn)
+    for bend in (
+        lambda z: developable.roll(z, curvature, direction),
+        lambda z: developable.cone(z, gamma, -3 * np.exp(0.7j), np.exp(0.7j)),
+    ):
+        x, y = partials(bend, GRID)
+        form = np.stack([dot(x, x) - 1, dot(x, y), dot(y, y) - 1])
+        assert np.abs(form).max() < 1e-9
+
+
+@given(st.floats(0, 1))
+def test_the_form_is_constant_while_control_points_move(part):
+    moved = (1 - part) * CONTROL + part * np.array([[0, 0, 0], [2, 1, 0], [5, 4, -1], [5, 7, 4]])
+    curve = developable.arc_length(developable.bezier(moved))
+    x, y = partials(lambda z: developable.rectifying(z, curve), GRID[:3, :2] + 3.5 - 0.3j)
+    form = np.stack([dot(x, x) - 1, dot(x, y), dot(y, y) - 1])
+    assert np.abs(form).max() < 1e-9
+
+
 @each_map
 def test_edges_measured_along_the_surface_keep_their_lengths(bend):
     for start, end in ((GRID[:-1], GRID[1:]), (GRID[:, :-1], GRID[:, 1:])):

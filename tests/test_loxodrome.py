@@ -146,8 +146,8 @@ def test_no_row_where_the_radius_changes_too_fast_for_the_quads():
     disk = surfaces.Profile(lambda t: 1 + t, lambda t: 0 * t, 0, 1000)
     with pytest.raises(ValueError, match="does not fit, no such quad stands on t = 0"):
         loxodrome.web(disk, 128 * DEG, 94 * DEG, 4)
-    net = loxodrome.web(disk, 128 * DEG, 94 * DEG, 8, n=3)
-    assert net.rows == 3 and deviation(net, 128 * DEG, 94 * DEG).max() < 1e-12
+    net = loxodrome.web(disk, 128 * DEG, 94 * DEG, 8, n=2)
+    assert net.rows == 2 and deviation(net, 128 * DEG, 94 * DEG).max() < 1e-12
 
 
 # --- the net ------------------------------------------------------------------------------
