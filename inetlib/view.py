@@ -14,7 +14,7 @@ import warnings
 from functools import cache
 
 import numpy as np
-from matplotlib.image import imsave
+import PIL.Image
 
 from . import mesh, plot
 
@@ -151,6 +151,7 @@ def show(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live
         return scene(V, Q, families, colours, width, view, live=True).show()
     from IPython.display import Image
 
+    still = PIL.Image.fromarray(picture(V, Q, families, colours, width, view))
     file = io.BytesIO()
-    imsave(file, picture(V, Q, families, colours, width, view), pil_kwargs={"optimize": True})
+    still.quantize(192, dither=PIL.Image.Dither.NONE).save(file, format="png", optimize=True)
     return Image(data=file.getvalue(), format="png")

@@ -355,6 +355,14 @@ def test_closed_torus_webs_close_and_are_exact(m, n, shift):
     assert np.array_equal(around[0], around[-1]) and len(net.families.u) == n
 
 
+def test_subnets_of_a_closed_torus_are_closed_too():
+    net = loxodrome.torus_web(2, 0.8, 48, 24, 12)
+    for pair, faces in ((("u", "d2"), 48 * 24), (("v", "d1"), 48 * 24), (("d1", "d2"), 48 * 12)):
+        V, Q = loxodrome.subnet(net, *pair)
+        assert len(Q) == faces and mesh.boundary_loops(Q) == [] and mesh.is_labelled(Q)
+        mesh.check(V, Q)
+
+
 def test_the_open_march_at_those_angles_ends_where_it_started():
     net = loxodrome.torus_web(2, 0.8, 48, 24, 12)
     longer = surfaces.torus_profile(2, 0.8, -np.pi, 2 * np.pi)
