@@ -8,7 +8,35 @@ Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
 
 from importlib.metadata import version
 
-from . import adjacency, conformal, measure, mesh, parallelogram, surfaces
+from . import (
+    adjacency,
+    conformal,
+    curves,
+    developable,
+    forms,
+    kinematic,
+    loxodrome,
+    measure,
+    mesh,
+    moebius,
+    parallelogram,
+    rings,
+    surfaces,
+)
 
-__all__ = ["adjacency", "conformal", "measure", "mesh", "parallelogram", "surfaces"]
+__all__ = [
+    "adjacency",
+    "conformal",
+    "curves",
+    "developable",
+    "forms",
+    "kinematic",
+    "loxodrome",
+    "measure",
+    "mesh",
+    "moebius",
+    "parallelogram",
+    "rings",
+    "surfaces",
+]
 __version__ = version("inetlib")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from inetlib import conformal, measure, mesh, parallelogram
+from inetlib import conformal, forms, loxodrome, measure, mesh, parallelogram, surfaces
 
 DEG = np.pi / 180
 
@@ -194,3 +194,120 @@ def test_the_labels_start_at_the_top_left():
     lam, mu = measure.ratios(V, [[0, 1, 2, 3]])
     turned = measure.ratios(V, np.roll([[0, 1, 2, 3]], 1, axis=1))
     assert np.allclose([lam * turned[0], mu * turned[1]], 1) and mesh.is_labelled([[0, 1, 2, 3]])
+
+
+def conjugate_with(helicoid, t):
+    """cos t C + sin t H as a surface, H given by a function of u and v."""
+    u, v = sp.symbols("u v", real=True)
+    C = sp.Matrix([sp.cosh(v) * sp.cos(u), sp.cosh(v) * sp.sin(u), v])
+    X = tuple(sp.cos(t) * C + sp.sin(t) * sp.Matrix(helicoid(u, v)))
+    return surfaces.Surface("", sp.Lambda((u, v), X))
+
+
+def test_e5_the_conjugate_family_needs_the_other_helicoid():
+    def printed(u, v):
+        return sp.sinh(v) * sp.cos(u), sp.sinh(v) * sp.sin(u), u
+
+    def corrected(u, v):
+        return sp.sinh(v) * sp.sin(u), -sp.sinh(v) * sp.cos(u), u
+
+    u, v, t = sp.symbols("u v t", real=True)
+    for helicoid, shear in ((printed, sp.sin(2 * t) / 2), (corrected, 0)):
+        E, F, G = forms.first_form(conjugate_with(helicoid, t), u, v)
+        assert sp.simplify(E - G) == 0
+        assert sp.simplify(F - shear) == 0
+    assert sp.simplify(forms.mean_curvature(conjugate_with(corrected, t), u, v)) == 0
+    bent = forms.mean_curvature(conjugate_with(printed, 1.0), u, v)
+    assert abs(float(bent.subs({u: 1, v: 0}))) > 0.1
+    asked = np.arccos(1 / np.sqrt(5)), np.pi / 4
+    for degrees, off in ((15, 13), (30, 31)):
+        wrong = conjugate_with(printed, degrees * DEG).coordinates(u, v)
+        for points, expected in (
+            (surfaces.Surface("", sp.lambdify((u, v), wrong)).point, off),
+            (surfaces.conjugate(degrees * DEG).point, 0),
+        ):
+            z = conformal.sheared_grid(*asked, 64, 64, edge=0.0265, direction=1 - 1j)
+            z = z - z.mean() + 0.4 + 0.1j
+            V = points(z.real, z.imag).reshape(-1, 3)
+            found = measure.angles(V, mesh.grid_quads(64, 64))[0]
+            assert np.abs(found - asked[0]).max() / DEG == pytest.approx(expected, abs=0.5)
+
+
+def test_e15_only_on_surfaces_of_revolution_are_isothermal_nets_principal():
+    u, v, t = sp.symbols("u v t", real=True)
+    for surface in (surfaces.CYLINDER, surfaces.SPHERE, surfaces.CATENOID):
+        assert sp.simplify(forms.first_form(surface, u, v)[1]) == 0
+        assert sp.simplify(forms.second_form(surface, u, v)[1]) == 0  # principal: F = M = 0
+    E, F, G = forms.first_form(surfaces.HELICOID, u, v)
+    assert sp.simplify(E - G) == sp.simplify(F) == 0  # isothermal, and yet
+    L, M, N = (sp.simplify(x) for x in forms.second_form(surfaces.HELICOID, u, v))
+    assert (L, M**2, N) == (0, 1, 0)  # asymptotic, so the diagonals are the principal curves
+    M = forms.second_form(surfaces.conjugate(t), u, v)[1]
+    assert sp.simplify(M**2 - sp.sin(t) ** 2) == 0
+
+
+def test_e4_eq_15_needs_cot_theta0_not_cos_theta0():
+    s, t0 = sp.symbols("s theta0", positive=True)
+    f, g = sp.Function("f")(s), sp.Function("g")(s)
+
+    def tangent_of_angle(factor):
+        """(ds / f d alpha)^2 of the curve alpha' = factor / f, from the surface itself."""
+        angle = sp.Symbol("alpha", real=True)
+        S = sp.Matrix([f * sp.cos(angle), f * sp.sin(angle), g])
+        along, across = S.diff(angle) * factor / f, S.diff(s)
+        squares = [sp.simplify(x.dot(x)) for x in (across, along)]
+        return sp.simplify((squares[0] / squares[1]).subs(g.diff(s), sp.sqrt(1 - f.diff(s) ** 2)))
+
+    assert sp.simplify(tangent_of_angle(sp.cot(t0)) - sp.tan(t0) ** 2) == 0
+    printed = tangent_of_angle(sp.cos(t0)).subs(t0, sp.pi / 3)
+    assert float(sp.deg(sp.atan(sp.sqrt(printed)))) == pytest.approx(63.4349, abs=1e-4)
+
+
+def test_e6_the_distance_of_c_and_d_is_a_chord_and_says_nothing():
+    sphere, m = surfaces.sphere_profile(), 24
+    t = np.linspace(-1.1, 1.1, 9)
+    C = surfaces.revolve(sphere, 0.3, t)
+    D = surfaces.revolve(sphere, 0.3 + 2 * np.pi / m, t)
+    distance, radius = np.linalg.norm(C - D, axis=1), sphere.radius(t)
+    assert np.allclose(distance, 2 * radius * np.sin(np.pi / m), atol=1e-14)  # on every parallel
+    assert np.all(distance < 2 * np.pi * radius / m * (1 - 1e-3))  # as printed, on none
+
+
+def test_e7_the_lam_equation_has_two_roots_or_all_or_a_double_one():
+    sphere = surfaces.sphere_profile(start=0.0, stop=0.8)
+    t = np.linspace(0.02, 0.8, 2000)
+
+    def signs(theta, theta0, equation):
+        """Changes of sign, and the largest value, of |A-D| / (lam |B-C|) - 1 (or with mu)."""
+        lam, mu = parallelogram.ratios(theta * DEG, theta0 * DEG)
+        w = np.arctanh(np.sin(t))  # Mercator's coordinate of the sphere, from the equator
+        turn, delta = w / np.tan(theta0 * DEG), 2 * np.pi / 24
+        A, B = surfaces.revolve(sphere, 0.0, 0.0), surfaces.revolve(sphere, delta, 0.0)
+        C, D = surfaces.revolve(sphere, turn, t), surfaces.revolve(sphere, turn + delta, t)
+        one, two = D - A, lam * (B - C)
+        if equation == "mu":
+            one, two = B + D - A - C, mu * (C + D - A - B)
+        left = np.linalg.norm(one, axis=1) / np.linalg.norm(two, axis=1) - 1
+        return np.count_nonzero(np.diff(np.sign(left))), left.max()
+
+    assert signs(60, 60, "lam")[0] == 2
+    assert abs(signs(60, 90, "lam")[1]) < 1e-12  # true on every parallel
+    changes, top = signs(90, 60, "lam")
+    assert changes == 0 and -1e-2 < top < 0  # double in the limit, here none at all
+    assert all(signs(*angles, "mu")[0] == 1 for angles in [(60, 60), (60, 90), (90, 60)])
+    lam, mu = parallelogram.ratios(60 * DEG, 60 * DEG)  # the wrong root has 1 / mu: other angles
+    assert np.allclose(parallelogram.angles(lam, 1 / mu), np.radians([120, 60]))
+
+
+def test_e12_b_lies_on_the_side_of_growing_alpha():
+    lam, _ = parallelogram.ratios(60 * DEG, 45 * DEG)
+    net = loxodrome.web(surfaces.sphere_profile(), 60 * DEG, 45 * DEG, 24)
+    C, A, B, D = net.V[net.Q].transpose(1, 0, 2)
+
+    def ratio(A, B, C, D):
+        return np.linalg.norm(A - D, axis=1) / np.linalg.norm(B - C, axis=1)
+
+    turned = np.arctan2(np.cross(A, B)[:, 2], np.sum(A[:, :2] * B[:, :2], axis=1))
+    assert np.allclose(turned, 2 * np.pi / 24) and np.allclose(ratio(A, B, C, D), lam)
+    assert np.allclose(ratio(B, A, D, C), 1 / lam)  # A and B, C and D exchanged
+    assert len(net.Q) == 24 * net.rows  # m around the axis, as in Alg. 1

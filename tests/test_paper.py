@@ -20,7 +20,8 @@ EVERYTHING = (
     + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
     + [f"App. A.{k}" for k in range(1, 5)]
 )
-NOT_YET = 20
+NOT_YET = 10
+IN_PART = ["Fig. 9"]
 
 
 def rows():
@@ -30,7 +31,7 @@ def rows():
     table = {}
     for item, _, functions, tests, notebook, status in cells[2:]:
         assert item not in table, item
-        assert status == "done", item
+        assert status == "done" or (item in IN_PART and status.startswith("in part")), item
         table[item] = (
             re.findall(r"`([^`]+)`", functions),
             re.findall(r"`([^`]+)`", tests),
@@ -107,4 +108,4 @@ def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
             assert test.startswith(f"test_e{number}_")
     later = [m for line in not_yet("ERRATA.md") for m in re.findall(r"^E(\d+)", line)]
     assert sorted(map(int, done + later)) == list(range(1, 19))
-    assert len(later) == 7
+    assert len(later) == 1
