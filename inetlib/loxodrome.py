@@ -91,14 +91,17 @@ def web(profile, theta, theta0, m, n=None, method="exact", equation="lam"):
     m = _whole("m", m, 3)
     n = None if n is None else _whole("n", n, 1)
     check_size(profile, theta, theta0, m, n)
-    if method == "smooth":
-        t, turn, why = smooth_rings(profile, theta, theta0, m, n)
-    elif method == "exact":
-        t, turn, why = march(profile, exact_ring(profile, theta, theta0, m), n)
-    elif method == "paper":
-        t, turn, why = march(profile, paper_ring(profile, theta, theta0, m, equation), n)
-    else:
-        raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
+    try:
+        if method == "smooth":
+            t, turn, why = smooth_rings(profile, theta, theta0, m, n)
+        elif method == "exact":
+            t, turn, why = march(profile, exact_ring(profile, theta, theta0, m), n)
+        elif method == "paper":
+            t, turn, why = march(profile, paper_ring(profile, theta, theta0, m, equation), n)
+        else:
+            raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
+    except NoRow as reason:
+        raise NoRow(f"no row of {m} quads at profile.start, {reason}; a larger m?") from None
     asked = f" of {n}" if n is not None and len(t) <= n else ""
     message = f"{len(t) - 1}{asked} rows of {m} quads: {why}"
     return _net(profile, m, t, turn, message, theta, theta0)

@@ -53,7 +53,7 @@ def meridian_ends(profile):
 
     Paper: Alg. 1.
     """
-    return f"the next one does not fit, the meridian ends at t = {profile.stop:.6g}"
+    return f"a further one does not fit: the meridian ends at t = {profile.stop:.6g}"
 
 
 def smooth_rings(profile, theta, theta0, m, n):
@@ -186,7 +186,7 @@ def exact_ring(profile, theta, theta0, m):
         if t is None:
             raise NoRow(meridian_ends(profile))
         if np.isnan(t):
-            raise NoRow(f"the next one does not fit, no such quad stands on t = {t0:.6g}")
+            raise NoRow(f"a further one does not fit: no such quad stands on t = {t0:.6g}")
         return t, float(_exact_turn(profile, psi, t0, t))
 
     return following

@@ -180,7 +180,7 @@ def test_families_are_the_curves_of_the_mesh():
 
 def test_fewer_rows_than_asked_for_are_announced():
     net = loxodrome.web(SURFACES["sphere"], 60 * DEG, 45 * DEG, 24, n=100)
-    assert net.rows == 26 and net.message.startswith("26 of 100 rows of 24 quads: the next one")
+    assert net.rows == 26 and net.message.startswith("26 of 100 rows of 24 quads: a further one")
     assert "t = 1.2" in net.message
     smooth = loxodrome.web(SURFACES["sphere"], 60 * DEG, 45 * DEG, 24, n=100, method="smooth")
     assert smooth.rows == 26 and smooth.message == net.message
