@@ -101,7 +101,7 @@ def web(profile, theta, theta0, m, n=None, method="exact", equation="lam"):
         else:
             raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
     except NoRow as reason:
-        raise NoRow(f"no row of {m} quads at profile.start, {reason}; a larger m?") from None
+        raise NoRow(f"not one row of {m} quads: {reason} (try a larger m)") from None
     asked = f" of {n}" if n is not None and len(t) <= n else ""
     message = f"{len(t) - 1}{asked} rows of {m} quads: {why}"
     return _net(profile, m, t, turn, message, theta, theta0)
