@@ -22,8 +22,9 @@ def environment():
         "dependencies:",
         f"  - python{project['requires-python']}",
         "  - pip",
-        *(f"  - {package}" for package in packages),
+        *(f"  - {package}" for package in packages if "[" not in package),
         "  - pip:",
+        *(f"      - {package}" for package in packages if "[" in package),  # conda has no extras
         "      - -e .",
     ]
     return "\n".join(lines) + "\n"
