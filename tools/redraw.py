@@ -88,9 +88,10 @@ def run(notebook, folder, bar):
         on_cell_execute=start,
         on_cell_executed=done,
     ).execute()
-    if stored and not view.available()[0]:  # keep the pictures that this machine cannot draw
-        for k, outputs in stored.items():
-            notebook.cells[k].outputs = outputs
+    drawn = bool(stored) and view.available()[0]
+    for k, outputs in stored.items():  # keep pictures that this machine cannot draw, drop warnings
+        cell = notebook.cells[k]
+        cell.outputs = [o for o in cell.outputs if o.get("name") != "stderr"] if drawn else outputs
     return seconds
 
 
