@@ -22,6 +22,16 @@ def shear(z, theta0):
     return z + np.imag(z) / np.tan(theta0)
 
 
+def unit(direction):
+    """The complex number of length 1 along a direction; ValueError for 0, NaN and infinity.
+
+    Paper: Sec. 3.3.
+    """
+    if not (np.isfinite(direction) and abs(direction) > 0):
+        raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
+    return direction / abs(direction)
+
+
 def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     """A planar grid of congruent parallelograms, complex (m+1, n+1).
 
@@ -40,9 +50,7 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     m, n = mesh._check_counts(m, n)
     if not (np.isfinite(edge) and edge > 0):
         raise ValueError(f"edge = {edge}: a positive length is wanted")
-    if not (np.isfinite(direction) and abs(direction) > 0):
-        raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
-    u = edge * direction / abs(direction)
+    u = edge * unit(direction)
     rho = parallelogram.rho(lam, mu)
     half = np.sqrt(complex(kappa)) / 2
     v = np.arctanh(rho * np.tanh(half * u)) / half if kappa else rho * u
@@ -136,25 +144,6 @@ def square_bezier(start, end):
     Paper: App. A.2 (z^2), Fig. 3.
     """
     return start**2, start * end, end**2
-
-
-def inversion_bezier(start, end):
-    """The image of a segment under 1/z as a rational quadratic Bezier curve.
-
-    Returns (control points (3,) complex, weights (3,)).  Exact: 1/z(t) is
-    conj(z(t)) / |z(t)|^2, a quotient of polynomials of degree at most 2.  ValueError when a
-    control point would be infinite: an end at 0, or a right angle between start and end.
-
-    Paper: App. A.2 (1/z), Fig. 3.
-    """
-    weights = np.array([abs(start) ** 2, np.real(start * np.conj(end)), abs(end) ** 2])
-    if not np.all(np.abs(weights[1]) > 1e-14 * np.sqrt(weights[0] * weights[2])):
-        raise ValueError(
-            f"the segment from {start} to {end} ends at 0 or is seen from 0 under a right angle: "
-            "a control point of its image lies at infinity, shorten or split the segment"
-        )
-    points = np.conj(np.array([start, (start + end) / 2, end]))
-    return points / weights, weights
 
 
 def image_lines(f, z, samples=33):

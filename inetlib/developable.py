@@ -10,11 +10,13 @@ Paper: Sec. 5.1.
 import numpy as np
 from scipy.optimize import root
 
+from .conformal import unit
 from .curves import Curve as Curve  # public here too
 from .curves import arc_length as arc_length
 from .curves import bezier as bezier
 from .curves import darboux as darboux
 from .curves import require, require_dimension, require_rulings
+from .mesh import _check_counts
 from .parallelogram import _lib, ratios, rho
 
 KNOTS = 2049  # on a curve, where the edge of regression is looked for
@@ -35,12 +37,6 @@ def _complex(z):
         )
     require(np.isfinite(z), lambda at: "is not a finite number")
     return z
-
-
-def _unit(direction):
-    if not (np.isfinite(direction) and abs(direction) > 0):
-        raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
-    return direction / abs(direction)
 
 
 def _space(xy, height):
@@ -77,12 +73,12 @@ def roll(z, curvature, direction=1):
 
     Paper: Sec. 5.1, Fig. 7.
     """
-    z, unit = _complex(z), _unit(direction)
+    z, along = _complex(z), unit(direction)
     if not np.isfinite(curvature):
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")
-    w = z * np.conj(unit)
+    w = z * np.conj(along)
     x, y, height = roll_coordinates(w.real, w.imag, curvature)
-    return _space((x + 1j * y) * unit, height)
+    return _space((x + 1j * y) * along, height)
 
 
 def cone_coordinates(distance, angle, gamma):
@@ -108,12 +104,12 @@ def cone(z, gamma, apex=0, direction=1):
 
     Paper: Sec. 5.1, Fig. 7.
     """
-    z, unit = _complex(z), _unit(direction)
+    z, along = _complex(z), unit(direction)
     if not 0 < gamma < np.pi:
         raise ValueError(f"gamma = {gamma}: an angle between 0 and pi is wanted")
     if not np.isfinite(apex):
         raise ValueError(f"apex = {apex}: a finite complex number is wanted")
-    w = (z - apex) * np.conj(unit)
+    w = (z - apex) * np.conj(along)
     angle = np.angle(w)
     span, room = np.ptp(angle), 2 * np.pi * np.sin(gamma)
     if span > room * (1 + 1e-12):
@@ -122,7 +118,7 @@ def cone(z, gamma, apex=0, direction=1):
             f"2 pi sin(gamma) = {room:.6g} only: it would overlap itself"
         )
     x, y, height = cone_coordinates(np.abs(w), angle, gamma)
-    return _space((x + 1j * y) * unit + apex, height)
+    return _space((x + 1j * y) * along + apex, height)
 
 
 def cylinder(z, directrix, direction=1):
@@ -133,11 +129,11 @@ def cylinder(z, directrix, direction=1):
 
     Paper: Sec. 5.1 (general cylinder).
     """
-    z, unit = _complex(z), _unit(direction)
+    z, along = _complex(z), unit(direction)
     require_dimension(directrix, 2)
-    w = z * np.conj(unit)
+    w = z * np.conj(along)
     x, height = np.moveaxis(directrix.point(w.real), -1, 0)
-    return _space((x + 1j * w.imag) * unit, height)
+    return _space((x + 1j * w.imag) * along, height)
 
 
 # --- the rectifying developable -----------------------------------------------------------
@@ -252,9 +248,8 @@ def rolled_grid(theta, theta0, m, n, curvature, origin=0, edge=1.0, direction=1)
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")
     if not (np.isfinite(edge) and edge > 0) or abs(edge * curvature) >= np.pi:
         raise ValueError(f"edge = {edge}: it must be positive and shorter than half a turn")
-    if not (m >= 1 and n >= 1 and int(m) == m and int(n) == n):
-        raise ValueError(f"m = {m}, n = {n}: whole numbers of at least 1 are wanted")
-    u, half = edge * _unit(direction), curvature / 2
+    m, n = _check_counts(m, n)
+    u, half = edge * unit(direction), curvature / 2
 
     def square(a, b=0):  # of the chord along a, in the middle of two that are b apart
         across = np.real(a) * np.sinc(half * np.real(a) / np.pi) * np.cos(half * np.real(b))
@@ -270,4 +265,4 @@ def rolled_grid(theta, theta0, m, n, curvature, origin=0, edge=1.0, direction=1)
     if not np.abs(found.fun).max() < 1e-12:
         raise ValueError(f"edge = {edge}: no face with these angles fits on the cylinder")
     v = edge * complex(*found.x)
-    return origin + u * np.arange(int(m) + 1)[:, None] + v * np.arange(int(n) + 1)
+    return origin + u * np.arange(m + 1)[:, None] + v * np.arange(n + 1)

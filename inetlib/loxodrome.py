@@ -10,6 +10,7 @@ Paper: Sec. 5.3, Alg. 1, App. A.3.
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import root
 
 from . import mesh, surfaces
 from .mesh import Families
@@ -252,10 +253,13 @@ def torus_web(major, minor, m, n, shift):
         t, turn, _ = march(profile, exact_ring(profile, *angles, m), n)
         if len(t) <= n:
             raise NoRow(f"m = {m}, n = {n}, shift = {shift}: the rows do not fit on the torus")
-        return t, turn, np.array([t[-1] - np.pi, turn[-1] - 2 * np.pi / m * shift])
+        return t, turn, [t[-1] - np.pi, turn[-1] - 2 * np.pi / m * shift]
 
-    theta, theta0 = _newton(miss, np.array([smooth.theta, smooth.theta0]))
-    t, turn, _ = miss([theta, theta0])
+    found = root(lambda angles: miss(angles)[2], smooth[2:], tol=1e-15)
+    theta, theta0 = found.x
+    t, turn, gap = miss(found.x)
+    if not np.abs(gap).max() < 1e-12:
+        raise ValueError("no closed web near the smooth one: take more quads")
     message = f"{n} rows of {m} quads, closed with a shift of {shift}"
     net = _net(profile, m, t[:-1], turn[:-1], message, theta, theta0)
     index = np.arange(m * n).reshape(m, n)
@@ -264,20 +268,6 @@ def torus_web(major, minor, m, n, shift):
     Q = Q.reshape(-1, 4)
     families = Families(*([net.V[line] for line in lines] for lines in mesh.polylines(Q)))
     return net._replace(Q=Q, families=families, rows=n, t=t)
-
-
-def _newton(miss, x):
-    """The zero of the last result of miss(x), two equations in two unknowns."""
-    for _ in range(20):
-        value = miss(x)[-1]
-        slope = [(miss(x + h)[-1] - miss(x - h)[-1]) / 2e-6 for h in 1e-6 * np.eye(2)]
-        step = np.linalg.solve(np.transpose(slope), value)
-        x = x - step
-        if abs(step).max() < 1e-14:
-            break
-    if not abs(miss(x)[-1]).max() < 1e-12:
-        raise ValueError("no closed web near the smooth one: take more quads")
-    return x
 
 
 # --- checks -------------------------------------------------------------------------------

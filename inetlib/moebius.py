@@ -12,6 +12,7 @@ Paper: Sec. 3.3 (remark), Sec. 5.2.
 
 import numpy as np
 
+from .parallelogram import _require_positive
 from .surfaces import Surface
 
 LORENTZ = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
@@ -39,7 +40,7 @@ def inversion(centre=(0, 0, 0), radius=1.0):
 
     Paper: Sec. 5.2.
     """
-    centre, radius = _vector("centre", centre), _positive("radius", radius)
+    centre, radius = _vector("centre", centre), _require_positive("radius", radius)
     k = centre @ centre - radius**2
     sphere = np.array([*centre, (k - 1) / 2, (k + 1) / 2])  # <sphere, sphere> = radius^2
     return np.eye(5) - 2 / radius**2 * np.outer(sphere, LORENTZ @ sphere)
@@ -53,7 +54,7 @@ def similarity(rotation=None, scale=1.0, shift=(0, 0, 0)):
 
     Paper: Sec. 5.2.
     """
-    scale, shift = _positive("scale", scale), _vector("shift", shift)
+    scale, shift = _require_positive("scale", scale), _vector("shift", shift)
     R = np.eye(3) if rotation is None else np.asarray(rotation, dtype=float)
     if R.shape != (3, 3) or not np.abs(R.T @ R - np.eye(3)).max() <= 1e-9:
         raise ValueError("rotation must be an orthogonal 3 x 3 matrix")
@@ -131,7 +132,7 @@ def away_from(V, clearance=0.2):
 
     Paper: Sec. 5.2 (beyond the paper).
     """
-    V, clearance = _points(V).reshape(-1, 3), _positive("clearance", clearance)
+    V, clearance = _points(V).reshape(-1, 3), _require_positive("clearance", clearance)
     diagonal = np.linalg.norm(np.ptp(V, axis=0))
     if len(V) < 2 or not diagonal > 0:
         raise ValueError("V needs at least two different points")
@@ -214,9 +215,3 @@ def _vector(name, value):
     if value.shape != (3,) or not np.isfinite(value).all():
         raise ValueError(f"{name} = {value}: three finite coordinates are wanted")
     return value
-
-
-def _positive(name, value):
-    if not (np.isfinite(value) and value > 0):
-        raise ValueError(f"{name} = {value}: a positive number is wanted")
-    return float(value)

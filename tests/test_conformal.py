@@ -291,23 +291,6 @@ def test_the_square_bezier_curve_is_the_mapped_segment(start, end):
     np.testing.assert_allclose(curve, ((1 - t) * start + t * end) ** 2, atol=1e-12)
 
 
-@given(point, point)
-def test_the_inversion_bezier_curve_is_the_mapped_segment(start, end):
-    assume(min(abs(start), abs(end), abs((end / (start or 1)).imag)) > 0.1)
-    assume(abs(np.real(start * np.conj(end))) > 0.01)
-    t = np.linspace(0, 1, 11)
-    points, weights = conformal.inversion_bezier(start, end)
-    basis = np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2])
-    curve = (weights * points) @ basis / (weights @ basis)
-    np.testing.assert_allclose(curve, 1 / ((1 - t) * start + t * end), rtol=1e-9)
-
-
-@pytest.mark.parametrize(("start", "end"), [(0, 1), (1 + 1j, 0), (1, 1j), (-2j, 3)])
-def test_a_segment_with_an_infinite_control_point_is_refused(start, end):
-    with pytest.raises(ValueError, match="ends at 0 or is seen from 0 under a right angle"):
-        conformal.inversion_bezier(start, end)
-
-
 def test_image_lines_sample_the_straight_edges_before_mapping_them():
     z = np.array([[0, 1j, 2j + 1], [1, 1 + 2j, 3j]])  # m = 1, n = 2, bent lines
     u_lines, v_lines = conformal.image_lines(lambda w: w**2 + 1, z, samples=5)
