@@ -7,13 +7,14 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help figures test test-fast notebooks lint clean
+.PHONY: help figures test test-fast notebooks bench lint clean
 
 help:
 	@echo "make figures    run every notebook and redraw figures/"
 	@echo "make test       all tests, every notebook rerun from the first cell"
 	@echo "make test-fast  the tests without the notebooks"
 	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
+	@echo "make bench      seconds, memory and accuracy of the optimisation, some minutes"
 	@echo "make lint       ruff: format and lint"
 	@echo "make clean      remove .venv and caches"
 
@@ -31,6 +32,9 @@ test-fast: $(READY)
 
 notebooks: $(READY)
 	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb
+
+bench: $(READY)
+	$(BIN)/python bench/bench_solver.py
 
 lint: $(READY)
 	$(BIN)/ruff format .

@@ -5,6 +5,8 @@ A half-edge is the number 4 f + slot; it runs from corner `slot` of face f to th
 Paper: Sec. 2 (adjacency).
 """
 
+from itertools import combinations
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
@@ -16,19 +18,31 @@ def check_quads(Q):
     Paper: Sec. 4.1.
     """
     Q = np.asarray(Q)
-    if Q.size == 0:
-        raise ValueError("the mesh has no faces")
-    if Q.ndim != 2 or Q.shape[1] != 4:
+    if Q.size > 0 and (Q.ndim != 2 or Q.shape[1] != 4):
         what = "triangles" if Q.ndim == 2 and Q.shape[1] == 3 else f"an array of shape {Q.shape}"
         raise ValueError(f"the faces are {what}: quads are wanted, one row of four vertices each")
+    return check_faces(Q)
+
+
+def check_faces(Q):
+    """The faces, triangles (f, 3) or quads (f, 4), as int64, or a ValueError that says why not.
+
+    Paper: Sec. 4.1.
+    """
+    Q = np.asarray(Q)
+    if Q.size == 0:
+        raise ValueError("the mesh has no faces")
+    if Q.ndim != 2 or Q.shape[1] not in (3, 4):
+        raise ValueError(
+            f"the faces are an array of shape {Q.shape}: rows of three or four vertices are wanted"
+        )
     if not np.issubdtype(Q.dtype, np.integer):
         raise ValueError(f"the faces are of type {Q.dtype}: integers are wanted")
     if Q.min() < 0:
         raise ValueError(
             f"face {np.argmin(Q.min(axis=1))} names vertex {Q.min()}: counting starts at 0"
         )
-    a, b, c, d = Q.T
-    repeated = (a == b) | (b == c) | (c == d) | (d == a) | (a == c) | (b == d)
+    repeated = np.any([a == b for a, b in combinations(Q.T, 2)], axis=0)
     if repeated.any():
         face = np.argmax(repeated)
         raise ValueError(f"face {face} uses a vertex twice: {Q[face].tolist()}")
@@ -60,16 +74,24 @@ def twins(Q):
 
     Paper: Sec. 2 (adjacency).
     """
-    Q = check_quads(Q)
-    one, two = pairs(Q).T
-    start = Q.ravel()
+    return opposites(check_quads(Q))
+
+
+def opposites(F):
+    """`twins` of checked faces of any kind, triangles (f, 3) or quads (f, 4): int64.
+
+    Paper: Sec. 2 (adjacency).
+    """
+    one, two = pairs(F).T
+    start, sides = F.ravel(), F.shape[1]
     clash = np.flatnonzero(start[one] == start[two])
     if clash.size:
-        faces = one[clash[0]] // 4, two[clash[0]] // 4
+        faces = one[clash[0]] // sides, two[clash[0]] // sides
         raise ValueError(
-            f"faces {faces[0]} and {faces[1]} are oriented against each other: see mesh.label"
+            f"faces {faces[0]} and {faces[1]} are oriented against each other"
+            + (": see mesh.label" if sides == 4 else "")
         )
-    twin = np.full(Q.size, -1)
+    twin = np.full(F.size, -1)
     twin[one], twin[two] = two, one
     return twin
 
@@ -154,3 +176,57 @@ def fans(Q):
                 raise ValueError(f"the faces at vertex {vertex} form two fans: not a manifold")
         found[int(k)] = np.stack(fan, axis=1)
     return found
+
+
+def chains(edges):
+    """Curves along the edges, passing through vertices that exactly two of the edges share.
+
+    edges: (k, 2) vertex indices.  A list of index arrays; closed curves repeat the first.
+
+    Paper: Sec. 4.3 (curves).
+    """
+    degree = np.bincount(edges.ravel())
+    at = {}
+    for number, (a, b) in enumerate(edges.tolist()):
+        at.setdefault(a, []).append(number)
+        at.setdefault(b, []).append(number)
+    left = np.ones(len(edges), dtype=bool)
+
+    def walk(vertex, number):
+        chain = [vertex]
+        while number is not None:
+            left[number] = False
+            a, b = edges[number]
+            chain.append(int(b if a == chain[-1] else a))
+            onward = [k for k in at[chain[-1]] if left[k]] if degree[chain[-1]] == 2 else []
+            number = onward[0] if onward else None
+        return np.array(chain)
+
+    ends = np.flatnonzero((degree > 0) & (degree != 2)).tolist()
+    open_ones = [walk(end, k) for end in ends for k in at[end] if left[k]]
+    return open_ones + [walk(int(a), k) for k, (a, _) in enumerate(edges) if left[k]]
+
+
+def triples(Q):
+    """Three neighbouring vertices (left, middle, right) along the mesh polylines: (k, 3).
+
+    Q: (f, 4), consistently labelled.  Along u-edges and along v-edges, wherever exactly two
+    edges of the family meet: not at singular vertices and not at the ends of polylines.
+
+    Paper: Sec. 6.3 (fairness).
+    """
+    Q = check_quads(Q)
+    v1, v2, v3, v4 = Q.T
+    found = []
+    for start, end in (((v2, v1), (v3, v4)), ((v2, v3), (v1, v4))):
+        one, two = np.concatenate(start), np.concatenate(end)
+        count = Q.max() + 1
+        key = np.unique(np.minimum(one, two) * count + np.maximum(one, two))
+        low, high = np.divmod(key, count)
+        at, other = np.concatenate([low, high]), np.concatenate([high, low])
+        order = np.argsort(at, kind="stable")
+        degree = np.bincount(at)
+        first = np.concatenate([[0], np.cumsum(degree)[:-1]])[degree == 2]
+        left, right = other[order[first]], other[order[first + 1]]
+        found.append(np.stack([left, at[order[first]], right], axis=1))
+    return np.concatenate(found)

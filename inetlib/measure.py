@@ -8,6 +8,7 @@ Paper: Sec. 4.1, Thm 11, Thm 12.
 
 from typing import NamedTuple
 
+import igl
 import numpy as np
 
 from . import mesh
@@ -42,6 +43,13 @@ class Quality(NamedTuple):
     area_ratio: float
     aspect: float
     planarity: float
+
+
+class Hausdorff(NamedTuple):
+    """The largest distances from the first mesh to the second, and from the second back."""
+
+    there: float
+    back: float
 
 
 def vectors(V, Q):
@@ -150,6 +158,32 @@ def spread(values, target=None):
     )
 
 
+def _normals(d1, d2):
+    """Unit normals of the faces and twice their areas."""
+    normal = _cross(d1, d2)
+    twice_area = np.sqrt(np.einsum("ij,ij->i", normal, normal))
+    if not twice_area.all():
+        raise ValueError(f"face {np.argmin(twice_area)} has no area: its diagonals are parallel")
+    return normal / twice_area[:, None], twice_area
+
+
+def _against(normal, neighbours):
+    """The faces whose normals point against the sum of those of their neighbours."""
+    or_zero = np.concatenate([normal, np.zeros((1, 3))])  # number -1 is no neighbour
+    around = sum(or_zero[faces] for faces in neighbours.T)
+    return np.flatnonzero(np.einsum("ij,ij->i", normal, around) < 0)
+
+
+def flipped(V, Q, neighbours=None):
+    """The flipped faces (see `quality`); neighbours: `mesh.face_neighbours(Q)` if known.
+
+    Paper: Sec. 6 (quality; beyond the paper).
+    """
+    d1, d2, _, _ = vectors(V, Q)
+    neighbours = mesh.face_neighbours(Q) if neighbours is None else neighbours
+    return _against(_normals(d1, d2)[0], neighbours)
+
+
 def quality(V, Q):
     """`Quality` of a mesh: flipped faces, size, aspect and planarity.
 
@@ -163,14 +197,8 @@ def quality(V, Q):
     Paper: Sec. 6 (quality; beyond the paper).
     """
     d1, d2, m13, m24 = vectors(V, Q)
-    normal = _cross(d1, d2)
-    twice_area = np.sqrt(np.einsum("ij,ij->i", normal, normal))
-    if not twice_area.all():
-        raise ValueError(f"face {np.argmin(twice_area)} has no area: its diagonals are parallel")
-    normal /= twice_area[:, None]
-    or_zero = np.concatenate([normal, np.zeros((1, 3))])  # number -1 is no neighbour
-    around = sum(or_zero[faces] for faces in mesh.face_neighbours(Q).T)
-    flipped = np.flatnonzero(np.einsum("ij,ij->i", normal, around) < 0)
+    normal, twice_area = _normals(d1, d2)
+    flipped = _against(normal, mesh.face_neighbours(Q))
     one, two = _length(m13, "a medial line"), _length(m24, "a medial line")
     V, Q = np.asarray(V, dtype=float), np.asarray(Q)
     apart = np.abs(np.einsum("ij,ij->i", V[Q[:, 1]] - V[Q[:, 0]], normal))
@@ -182,3 +210,31 @@ def quality(V, Q):
         aspect=float(np.maximum(one / two, two / one).max()),
         planarity=float((apart / size).max()),
     )
+
+
+def hausdorff(V, Q, W, R, refine=1):
+    """One-sided distances between the meshes V, Q and W, R, as `Hausdorff(there, back)`.
+
+    there is the largest distance from a vertex of V, Q to the surface W, R, back that from a
+    vertex of W, R to the surface V, Q.  Distances to a surface are true distances to its
+    triangles; quads are cut along their shorter diagonals, triangles (f, 3) are welcome too.
+    The largest distance need not sit at a vertex, so both are lower bounds of the Hausdorff
+    distances of the surfaces.  `refine` = k > 1 improves them: the edges of the triangles are
+    divided into k parts and all points of this lattice measured, (k + 1)^2 a quad.  The unit
+    is that of the coordinates; vertices of no face do not count.
+
+    Paper: Sec. 5.2 (Hausdorff distances).
+    """
+    if not (refine >= 1 and int(refine) == refine):
+        raise ValueError(f"refine = {refine}: a whole number of at least 1 is wanted")
+    one, two = mesh.triangles(V, Q), mesh.triangles(W, R)
+    return Hausdorff(_farthest(*one, *two, int(refine)), _farthest(*two, *one, int(refine)))
+
+
+def _farthest(V, F, W, G, parts):
+    """The largest distance of the sample points of the triangles V, F to the triangles W, G."""
+    i, j = np.divmod(np.arange((parts + 1) ** 2), parts + 1)
+    weights = (np.stack([parts - i - j, i, j], axis=1) / parts)[i + j <= parts]
+    samples = V[np.unique(F)] if parts == 1 else (weights @ V[F]).reshape(-1, 3)
+    squares, _, _ = igl.point_mesh_squared_distance(samples, W, G)
+    return float(np.sqrt(squares.max()))

@@ -19,7 +19,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .adjacency import boundary_loops, check_quads, fans, pairs, twins, two_colour
+from .adjacency import (
+    boundary_loops,
+    chains,
+    check_faces,
+    check_quads,
+    fans,
+    pairs,
+    twins,
+    two_colour,
+)
 from .adjacency import face_neighbours as face_neighbours  # boundary_loops, twins: public here too
 
 
@@ -116,22 +125,27 @@ def check_arrays(V, Q):
 
     Paper: Sec. 4.1.
     """
-    V, Q = np.asarray(V), check_quads(Q)
+    Q = check_quads(Q)
+    return _check_vertices(V, Q), Q
+
+
+def _check_vertices(V, F):
+    V = np.asarray(V)
     if V.ndim != 2 or V.shape[1] != 3 or V.dtype.kind not in "iuf":
         raise ValueError(
             f"V has the shape {V.shape} and type {V.dtype}: "
             "one row of three real coordinates a vertex is wanted"
         )
     V = V.astype(np.float64, copy=False)
-    if Q.max() >= len(V):
-        face = np.argmax(Q.max(axis=1))
+    if F.max() >= len(V):
+        face = np.argmax(F.max(axis=1))
         raise ValueError(
-            f"face {face} names vertex {Q.max()}, but there are only {len(V)} vertices"
+            f"face {face} names vertex {F.max()}, but there are only {len(V)} vertices"
         )
     if not np.isfinite(V).all():
         bad = np.flatnonzero(~np.isfinite(V).all(axis=1))[0]
         raise ValueError(f"vertex {bad} has a coordinate that is not a finite number")
-    return V, Q
+    return V
 
 
 # --- labelling --------------------------------------------------------------------------
@@ -213,34 +227,27 @@ def polylines(Q):
     v_edges = np.concatenate([np.stack([v2, v1], 1), np.stack([v3, v4], 1)])
     families = [np.unique(np.sort(e, axis=1), axis=0) for e in (u_edges, v_edges)]
     families += [np.stack([v1, v3], 1), np.stack([v2, v4], 1)]
-    return Families(*(_chains(edges) for edges in families))
-
-
-def _chains(edges):
-    """Curves along the edges, passing through vertices that two of the edges share."""
-    degree = np.bincount(edges.ravel())
-    at = {}
-    for number, (a, b) in enumerate(edges.tolist()):
-        at.setdefault(a, []).append(number)
-        at.setdefault(b, []).append(number)
-    left = np.ones(len(edges), dtype=bool)
-
-    def walk(vertex, number):
-        chain = [vertex]
-        while number is not None:
-            left[number] = False
-            a, b = edges[number]
-            chain.append(int(b if a == chain[-1] else a))
-            onward = [k for k in at[chain[-1]] if left[k]] if degree[chain[-1]] == 2 else []
-            number = onward[0] if onward else None
-        return np.array(chain)
-
-    ends = np.flatnonzero((degree > 0) & (degree != 2)).tolist()
-    chains = [walk(end, k) for end in ends for k in at[end] if left[k]]
-    return chains + [walk(int(a), k) for k, (a, _) in enumerate(edges) if left[k]]
+    return Families(*(chains(edges) for edges in families))
 
 
 # --- derived meshes ---------------------------------------------------------------------
+
+
+def triangles(V, F):
+    """The mesh as triangles: (V float64, T (t, 3) int64); a quad is cut along its shorter diagonal.
+
+    V: (n, 3); F: quads (f, 4), or triangles (f, 3), which stay; ValueError as in `check_arrays`.
+    Quad k becomes the rows 2 k and 2 k + 1; diagonals of equal length are cut along v1 v3.
+
+    Paper: Sec. 6.3 (reference surfaces).
+    """
+    F = check_faces(F)
+    V = _check_vertices(V, F)
+    if F.shape[1] == 3:
+        return V, F
+    d1, d2 = (np.linalg.norm(V[F[:, k + 2]] - V[F[:, k]], axis=1) for k in (0, 1))
+    corners = np.where((d1 <= d2)[:, None], [0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3])
+    return V, np.take_along_axis(F, corners, axis=1).reshape(-1, 3)
 
 
 def checkerboard(V, Q):

@@ -7,6 +7,7 @@ Paper: Figs. 1-13.
 """
 
 import hashlib
+import io
 import json
 import os
 import tempfile
@@ -14,7 +15,9 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+import matplotlib.pyplot as plt
 import numpy as np
+import PIL.Image
 
 from . import measure
 
@@ -109,6 +112,33 @@ def save(drawing, folder):
         drawing.figure.savefig(png, format="png", metadata={"Software": None})
         Path(listing).write_text(text + "\n", encoding="utf-8", newline="\n")
     return entry
+
+
+def save_text(text, path):
+    """Write a text file under a temporary name, then rename it: never half a file.
+
+    Paper: Table 1.
+    """
+    path = Path(path)
+    with _replacing(path) as name:
+        Path(name).write_text(text, encoding="utf-8", newline="\n")
+
+
+def preview(drawing, colours=96):
+    """The drawing for a notebook, a small PNG (IPython Image) of a few colours; closes the figure.
+
+    For figures that would make a notebook too large; the files of `save` are finer.
+
+    Paper: Figs. 1-13.
+    """
+    from IPython.display import Image  # only a notebook needs it
+
+    fine, small = io.BytesIO(), io.BytesIO()
+    drawing.figure.savefig(fine, format="png", dpi="figure")
+    plt.close(drawing.figure)
+    picture = PIL.Image.open(fine).convert("RGB")
+    picture.quantize(colours, dither=PIL.Image.Dither.NONE).save(small, format="png", optimize=True)
+    return Image(data=small.getvalue(), format="png")
 
 
 def read_manifest(folder):

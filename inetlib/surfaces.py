@@ -2,9 +2,10 @@
 
 A `Surface` is a function of two parameters; it takes numbers, arrays or sympy symbols.  A
 `Profile` is the meridian of a surface of revolution, two callables of one parameter; its
-Mercator coordinate w = int ds / radius makes (angle, w) isothermal.
+Mercator coordinate w = int ds / radius makes (angle, w) isothermal.  The last one is a
+freeform mesh, a start for the optimisation.
 
-Paper: Sec. 5, Sec. 5.2.
+Paper: Sec. 5, Sec. 5.2, Fig. 12.
 """
 
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from scipy.differentiate import derivative
 from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import make_interp_spline
 
+from .mesh import grid_quads
 from .parallelogram import _lib
 
 
@@ -261,3 +263,25 @@ def spline_profile(points):
     t = np.concatenate([[0.0], np.cumsum(chords)])
     radius, height = (make_interp_spline(t, x, k=min(3, len(t) - 1)) for x in points.T)
     return check_profile(Profile(radius, height, 0.0, float(t[-1])))
+
+
+# --- a freeform patch ---------------------------------------------------------------------
+
+
+def freeform_patch(m=20, n=20):
+    """A roof with a dome, a saddle and curved boundaries as a mesh (V, Q), m x n quads.
+
+    V: ((m+1)(n+1), 3), its bounding box has the diagonal 1 and its centre at 0; Q as in
+    `mesh.grid_quads`.  The quads are neither square nor alike, so every isogonal net on it
+    has to be found.
+
+    Paper: Fig. 12.
+    """
+    Q = grid_quads(m, n)
+    u, v = np.meshgrid(np.linspace(-1, 1, m + 1), np.linspace(-1, 1, n + 1), indexing="ij")
+    x = 1.25 * u + 0.38 * v + 0.08 * np.sin(2 * v)
+    y = v * (1 - 0.06 * u) - 0.25 * u + 0.12 * u * u
+    wave, vault = 0.52 * np.cos(2.3 * (u + 0.42) + 0.3 * v), 0.34 * (1 - 0.3 * u)
+    V = np.stack([x, y, wave - vault * (v - 0.1) ** 2 - 0.1 * u * v], axis=-1).reshape(-1, 3)
+    V -= (V.min(axis=0) + V.max(axis=0)) / 2
+    return V / np.linalg.norm(np.ptp(V, axis=0)), Q

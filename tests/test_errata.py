@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 
 from inetlib import conformal, forms, loxodrome, measure, mesh, parallelogram, surfaces
+from inetlib.drawings import fig09
 
 DEG = np.pi / 180
 
@@ -160,6 +161,33 @@ def test_e14_net_and_diagonals_match_by_a_reflection_not_a_rotation():
     assert min(abs(y_v / x_u - s * y_u / x_v) for s in (1, -1)) > 0.1
     # a reflection z -> c conj(z) takes X_u to Y_v and X_v to Y_u, lengths and all
     assert y_v / np.conj(x_u) == pytest.approx(y_u / np.conj(x_v))
+
+
+def test_e16_the_distances_of_fig_9_are_no_ratios_to_the_diagonal():
+    glides = fig09.optimised()
+    rows = [row for row in fig09.distances(glides) if row.panel[1] == "4"]
+    printed = np.array([1.959, 0.016, 38.593, 3.120, 9.464])
+    # The nearest point is not farther away than the farthest, and that lies in the same box.
+    bounds = []
+    for row in rows:
+        g = glides[row.panel]
+        apart = np.linalg.norm(g.start[:, None] - g.result.V, axis=2).max() / g.diagonal
+        box = np.ptp(np.concatenate([g.start, g.result.V]), axis=0)
+        assert max(row.there, row.back) < apart <= np.linalg.norm(box) / g.diagonal < 1.25
+        bounds.append(apart)
+    assert (printed > 1.25).tolist() == [True, False, True, True, True]
+    assert (printed > bounds).tolist() == [True, False, True, True, True]
+    # One unit for all five: as per cent four are within a factor of 5 of our distances from the
+    # net to its start, but the sphere's is hundreds of times smaller.  Per mille fits the
+    # catenoid only, and no unit at all makes all five agree within a factor of 10.
+    ours = np.array([row.there for row in rows])
+    off = np.exp(np.abs(np.log(0.01 * printed / ours)))
+    assert (off < 5).tolist() == [True, False, True, True, True] and off[1] > 100
+    off = np.exp(np.abs(np.log(0.001 * printed / ours)))
+    assert (off < 5).tolist() == [False, False, True, False, False]
+    for distances in (ours, np.array([row.back for row in rows])):
+        quotient = printed / distances  # the same for all five, were it only the unit
+        assert np.sqrt(quotient.max() / quotient.min()) > 10
 
 
 def test_e17_the_diagonal_parametrisation_and_its_partial_derivatives():

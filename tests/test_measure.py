@@ -384,3 +384,69 @@ def test_area_ratio_and_aspect_are_those_of_the_worst_face():
     assert found.aspect == pytest.approx(4)
     tall = measure.quality(V[:, [1, 0, 2]] * [-1, 1, 1], mesh.grid_quads(3, 1))
     assert tall.aspect == pytest.approx(4)
+
+
+# --- hausdorff ----------------------------------------------------------------------------
+
+
+def sphere(radius, m=24, n=15):
+    """Quads on a sphere between two parallels, vertices at the radius."""
+    i, j = np.divmod(np.arange((m + 1) * (n + 1)), n + 1)
+    u, v = 2 * np.pi * i / m, -1.2 + 2.4 * j / n
+    points = np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=1)
+    return radius * points, mesh.grid_quads(m, n)
+
+
+def test_parallel_plane_pieces_are_as_far_apart_as_they_are():
+    V, Q = sheared(5, 4)
+    turn = Rotation.from_rotvec([0.3, 1.1, -2])
+    W = V + np.array([0, 0, 0.25])
+    assert measure.hausdorff(V, Q, V, Q) == pytest.approx((0, 0), abs=1e-15)
+    assert measure.hausdorff(V, Q, W, Q) == pytest.approx((0.25, 0.25), rel=1e-14)
+    found = measure.hausdorff(100 * turn.apply(V), Q, 100 * turn.apply(W), Q)
+    assert found == pytest.approx((25, 25), rel=1e-12)
+
+
+def test_a_part_lies_on_the_whole_but_not_the_whole_on_the_part():
+    V, Q = sheared(6, 6, v=(0, 1, 0))
+    W, R = sheared(7, 2, u=(0.3, 0, 0), v=(0, 1.5, 0))  # 2.1 x 3, its vertices off the grid
+    there, back = measure.hausdorff(W, R, V, Q)
+    assert there == pytest.approx(0, abs=1e-15)
+    assert back == pytest.approx(np.hypot(6 - 2.1, 6 - 3), rel=1e-14)
+    assert measure.hausdorff(V, Q, W, R) == (back, there)
+
+
+@pytest.mark.parametrize("refine", [1, 3])
+def test_concentric_spheres_are_apart_by_the_difference_of_their_radii(refine):
+    (V, Q), (W, R) = sphere(1), sphere(1.3, 40, 25)
+    there, back = measure.hausdorff(V, Q, W, R, refine)
+    sagitta = 1.3 * (1 - np.cos(2 * np.pi / 40))
+    assert 0.3 - 2 * sagitta < there < 0.3 + 2 * sagitta
+    assert 0.3 - 1e-12 <= back < 0.3 + 2 * (1 - np.cos(2 * np.pi / 24))
+
+
+def test_refining_finds_the_ground_below_a_roof():
+    """Four vertices of the ground lie on the roof; only points between them are below it."""
+    V, Q = sheared(1, 1, u=(2, 0, 0), v=(0, 3, 0))
+    W, R = sheared(2, 1, v=(0, 3, 0))
+    W[2:4, 2] = h = 0.75  # slopes 0.75 : 1, their normals (3/5, 0, 4/5)
+    assert measure.hausdorff(V, Q, W, R) == pytest.approx((0, h), abs=1e-15)
+    assert measure.hausdorff(V, Q, W, R, refine=3).there == pytest.approx(2 / 3 * 0.6, rel=1e-14)
+    assert measure.hausdorff(V, Q, W, R, refine=4) == pytest.approx((0.6, h), rel=1e-14)
+
+
+def test_triangles_are_welcome_and_unused_vertices_do_not_count():
+    V, Q = sheared(3, 3, v=(0, 1, 0))
+    F = np.concatenate([Q[:, [0, 1, 2]], Q[:, [0, 2, 3]]])
+    far = np.concatenate([V, [[50.0, 0, 0]]])
+    above = V + np.array([0, 0, 2])
+    assert measure.hausdorff(far, F, above, Q, 2) == pytest.approx((2, 2), rel=1e-14)
+
+
+def test_hausdorff_refuses_bad_input():
+    V, Q = sheared(2, 2)
+    for bad in (0, 1.5, np.nan):
+        with pytest.raises(ValueError, match=f"refine = {bad}: a whole number"):
+            measure.hausdorff(V, Q, V, Q, bad)
+    with pytest.raises(ValueError, match="only 8 vertices"):
+        measure.hausdorff(V, Q, V[:-1], Q)

@@ -717,3 +717,43 @@ def test_an_odd_torus_has_no_diagonal_meshes():
 def test_diagonal_meshes_need_labels():
     with pytest.raises(ValueError, match=r"call mesh\.label"):
         mesh.diagonal_meshes(mesh.polygon_rings(5, 1)[1])
+
+
+# --- triangles ----------------------------------------------------------------------------
+
+
+def test_quads_are_cut_along_their_shorter_diagonal_and_keep_their_orientation():
+    V = np.array([[0, 1, 0], [0, 0, 0], [1, 0, 0], [3, 3, 0.0]])  # v1 v3 is shorter
+    for shift in range(4):
+        (first, second) = mesh.triangles(V, np.roll([[0, 1, 2, 3]], shift, axis=1))[1]
+        assert {0, 2} <= set(first.tolist()) & set(second.tolist())
+        assert sorted(signed_area(V[[first, second]])) == pytest.approx([0.5, 2.5])
+
+
+def test_triangles_of_many_quads_come_in_pairs_and_cover_them():
+    V, Q = bumpy(5, 4) * [1, 1, 0], slow_grid(5, 4)
+    W, T = mesh.triangles(V, Q)
+    np.testing.assert_array_equal(W, V)
+    assert T.shape == (40, 3)
+    np.testing.assert_allclose(signed_area(V[T]).reshape(-1, 2).sum(axis=1), signed_area(V[Q]))
+    for quad, pair in zip(Q, T.reshape(-1, 2, 3), strict=True):
+        cut = set(pair[0].tolist()) & set(pair[1].tolist())
+        shorter = min(
+            quad[::2], quad[1::2], key=lambda ends: np.linalg.norm(V[ends[1]] - V[ends[0]])
+        )
+        assert cut == set(shorter.tolist())
+
+
+def test_triangles_stay_as_they_are_and_squares_are_cut_along_v1_v3():
+    V = positions(1, 1)
+    np.testing.assert_array_equal(mesh.triangles(V, [[0, 2, 1]])[1], [[0, 2, 1]])
+    np.testing.assert_array_equal(mesh.triangles(V, [[1, 0, 2, 3]])[1], [[1, 0, 2], [1, 2, 3]])
+
+
+def test_triangles_refuses_other_faces_and_missing_vertices():
+    with pytest.raises(ValueError, match=r"shape \(1, 5\): rows of three or four vertices"):
+        mesh.triangles(positions(2, 2), [[0, 1, 2, 3, 4]])
+    with pytest.raises(ValueError, match="face 0 names vertex 4, but there are only 4 vertices"):
+        mesh.triangles(positions(1, 1), [[0, 1, 4]])
+    with pytest.raises(ValueError, match="face 0 uses a vertex twice"):
+        mesh.triangles(positions(1, 1), [[0, 1, 1]])

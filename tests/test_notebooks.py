@@ -35,7 +35,8 @@ def text_of(cell):
         if output.output_type == "stream":
             parts.append(output.text)
         elif "image/png" not in output.data:
-            parts.append(output.data.get("text/latex", output.data.get("text/plain", "")))
+            kinds = ("text/markdown", "text/latex", "text/plain")
+            parts.append(next((output.data[kind] for kind in kinds if kind in output.data), ""))
     return "".join(parts)  # one print may be stored in several pieces
 
 
@@ -88,6 +89,8 @@ def test_a_rerun_draws_figures_of_the_recorded_data(rerun):
             matplotlib.image.imread(f / f"{name}.png") for f in (figures, ROOT / "figures")
         )
         assert fresh.shape == old.shape and np.abs(fresh - old).mean() < 0.005
+    for table in figures.glob("table*"):
+        assert table.read_bytes() == (ROOT / "figures" / table.name).read_bytes()
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -20,8 +20,6 @@ EVERYTHING = (
     + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
     + [f"App. A.{k}" for k in range(1, 5)]
 )
-NOT_YET = 10
-IN_PART = ["Fig. 9"]
 
 
 def rows():
@@ -31,19 +29,13 @@ def rows():
     table = {}
     for item, _, functions, tests, notebook, status in cells[2:]:
         assert item not in table, item
-        assert status == "done" or (item in IN_PART and status.startswith("in part")), item
+        assert status == "done", item
         table[item] = (
             re.findall(r"`([^`]+)`", functions),
             re.findall(r"`([^`]+)`", tests),
             notebook,
         )
     return table
-
-
-def not_yet(page):
-    """The items below the heading `## Not yet` of a page."""
-    text = (ROOT / page).read_text(encoding="utf-8").split("## Not yet\n")[1]
-    return [re.sub(r"^- ", "", line) for line in text.splitlines() if line.startswith("- ")]
 
 
 def headings(notebook):
@@ -63,12 +55,7 @@ def cited(doc):
 
 
 def test_every_numbered_item_stands_exactly_once():
-    listed = list(rows()) + not_yet("PAPER.md")
-    assert sorted(listed) == sorted(EVERYTHING)
-
-
-def test_the_rows_not_yet_written_are_counted():
-    assert len(not_yet("PAPER.md")) == NOT_YET
+    assert sorted(rows()) == sorted(EVERYTHING)
 
 
 @pytest.mark.parametrize("item", rows())
@@ -106,6 +93,4 @@ def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
             assert all(f"- {w}:" in part for w in ("Printed", "Must be", "Why", "Test")), part
             assert (test := re.search(r"- Test: `(\w+)`", part)[1]) in found
             assert test.startswith(f"test_e{number}_")
-    later = [m for line in not_yet("ERRATA.md") for m in re.findall(r"^E(\d+)", line)]
-    assert sorted(map(int, done + later)) == list(range(1, 19))
-    assert len(later) == 1
+    assert sorted(map(int, done)) == list(range(1, 19))

@@ -284,3 +284,35 @@ def test_two_points_make_a_cone():
 def test_bad_points_are_named(points, word):
     with pytest.raises(ValueError, match=word):
         surfaces.spline_profile(points)
+
+
+@pytest.mark.parametrize(("m", "n"), [(20, 20), (7, 12)])
+def test_the_freeform_patch_has_the_unit_box_and_its_own_quads(m, n):
+    vertices, quads = surfaces.freeform_patch(m, n)
+    assert vertices.shape == ((m + 1) * (n + 1), 3) and quads.shape == (m * n, 4)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    assert np.linalg.norm(high - low) == pytest.approx(1, abs=1e-12)
+    np.testing.assert_allclose(low + high, 0, atol=1e-12)
+    assert measure.quality(vertices, quads).flips == 0
+
+
+def test_the_freeform_patch_is_a_dome_and_a_saddle_far_from_isogonal():
+    vertices, quads = surfaces.freeform_patch()
+    theta, theta0 = (np.degrees(x) for x in measure.angles(vertices, quads))
+    assert np.ptp(theta) > 20 and np.ptp(theta0) > 20
+    assert abs(theta.mean() - 90) > 10 and abs(theta0.mean() - 90) > 10
+    grid = vertices.reshape(21, 21, 3)
+    u, v = (np.gradient(grid, axis=k) for k in (0, 1))
+    normal = np.cross(u, v)
+    second = [np.gradient(u, axis=0), np.gradient(u, axis=1), np.gradient(v, axis=1)]
+    uu, uv, vv = (np.sum(x * normal, axis=-1)[3:-3, 3:-3] for x in second)
+    assert np.mean(uu * vv - uv**2 > 0) > 0.2  # the dome
+    assert np.mean(uu * vv - uv**2 < 0) > 0.2  # the saddle
+
+
+def test_freeform_patches_of_any_resolution_lie_on_one_surface():
+    coarse, fine = (surfaces.freeform_patch(k, k)[0].reshape(k + 1, k + 1, 3) for k in (20, 40))
+    shift = fine[0, 0] / np.linalg.norm(fine[0, 0] - fine[-1, -1])
+    scale = np.linalg.norm(coarse[0, 0] - coarse[-1, -1])
+    moved = fine / np.linalg.norm(fine[0, 0] - fine[-1, -1]) - shift
+    np.testing.assert_allclose(moved[::2, ::2], (coarse - coarse[0, 0]) / scale, atol=1e-12)

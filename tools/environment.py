@@ -6,6 +6,7 @@ python tools/environment.py
 import tomllib
 from pathlib import Path
 
+PIP_ONLY = ("libigl",)  # conda-forge has it under another name, igl
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -22,12 +23,17 @@ def environment():
         "dependencies:",
         f"  - python{project['requires-python']}",
         "  - pip",
-        *(f"  - {package}" for package in packages if "[" not in package),
+        *(f"  - {package}" for package in packages if not by_pip(package)),
         "  - pip:",
-        *(f"      - {package}" for package in packages if "[" in package),  # conda has no extras
+        *(f"      - {package}" for package in packages if by_pip(package)),
         "      - -e .",
     ]
     return "\n".join(lines) + "\n"
+
+
+def by_pip(package):
+    """Whether conda lacks the package: it has no extras, and not everything."""
+    return "[" in package or package.startswith(PIP_ONLY)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""Fig. 9, columns 1 and 3: one I-net on five isothermal surfaces, and its Moebius images."""
+"""Fig. 9: I-nets on five isothermal surfaces, their Moebius images, both optimised to others."""
 
 import numpy as np
 
 from .. import moebius, plot, publish, surfaces
-from . import _isothermal
+from . import _gliding, _isothermal, _lighter
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
 # rows, quads along a row, the upper left corner (u, v) in steps, the line that is highlighted
@@ -14,7 +14,7 @@ PATCHES = {
     "D": (8, 20, -14, 4, 10),
     "E": (8, 20, -14, 4, 10),
 }
-CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 28), "E": (-15, 28)}
+CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 45), "E": (-15, 28)}
 CENTRES = {
     "A": (2.9, 0, 0.7),
     "B": (2, -1, 1.1),
@@ -22,60 +22,107 @@ CENTRES = {
     "D": (2.9, 0, 0),
     "E": (0, 0, 4.8),
 }
-IMAGE_CAMERAS = {"A": (-35, 30), "B": (-45, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
+IMAGE_CAMERAS = {"A": (-35, 30), "B": (-75, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
+GOALS = {2: (80, 45), 4: (50, 50)}  # degrees
+TITLES = {
+    1: "(63.43\N{DEGREE SIGN}, 45\N{DEGREE SIGN})",
+    2: "(80\N{DEGREE SIGN}, 45\N{DEGREE SIGN})",
+    3: "Moebius image",
+    4: "(50\N{DEGREE SIGN}, 50\N{DEGREE SIGN})",
+}
 
 
 def draw(around=20, t=45):
-    """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, and its images under inversions.
+    """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 
-    around: steps of a full turn of u; t: of the conjugate minimal surface, degrees.  In each
-    picture one loxodrome (u-curve) is highlighted.  Columns 2 and 4 of the paper's figure
-    are optimised nets and belong to Sec. 6.  Returns a `publish.Drawing`.
+    around: steps of a full turn of u; t: of the conjugate minimal surface, degrees.  Column 2
+    is column 1 optimised to (80, 45) degrees, column 4 is column 3, the images of column 1
+    under inversions, optimised to (50, 50), both on their surfaces.  In each picture one
+    u-curve, in column 1 a loxodrome, is highlighted.  Returns a `publish.Drawing`.
 
     Paper: Fig. 9.
     """
-    panels = [[f"{k}{row}" for k in NAMES] for row in (1, 3)]
-    figure, axes = plot.canvas(panels, 7.2, 3.7)
+    panels = [[f"{k}{column}" for column in TITLES] for k in NAMES]
+    figure, axes = plot.canvas(panels, 6.6, 7.9)
     for ax in axes.values():
         ax.set_aspect("equal", adjustable="datalim")  # titles in one line
-    step = 2 * np.pi / around
     nets, data, claims = [], {}, {}
-    for letter, surface in _surfaces(np.radians(t)).items():
-        m, n, left, top, marked = PATCHES[letter]
-        z = _isothermal.domain(m, n, step, step * (left + 1j * top))
-        line = _isothermal.refined(z[:, marked], 3)
+    for panel, (surface, z, marked) in _starts(around, t).items():
         V, Q = _isothermal.sample(surface, z)
-        curve = surface.point(line.real, line.imag)
-        inversion = moebius.inversion(CENTRES[letter])
-        W, image = moebius.apply(inversion, V), moebius.apply(inversion, curve)
-        _panel(axes[f"{letter}1"], CAMERAS[letter], V, Q, curve)
-        _panel(axes[f"{letter}3"], IMAGE_CAMERAS[letter], W, Q, image)
-        plot.panel(axes[f"{letter}1"], f"{letter}_1", NAMES[letter])
-        plot.panel(axes[f"{letter}3"], f"{letter}_3", "")
-        nets.append((np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], 1), Q))
-        data |= {f"net_{letter}1": V, f"net_{letter}3": W}
-        for row, points in ((1, V), (3, W)):
-            off = max(publish.deviations([(points, Q, *_isothermal.ANGLES)]))
-            claims[f"sampled_net_{letter}{row}_max_deviation_deg"] = round(off, 6)
+        line = _isothermal.refined(z[:, marked], 3)
+        _panel(axes[panel], panel, V, Q, surface.point(line.real, line.imag))
+        if panel[1] == "1":
+            nets.append((np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], 1), Q))
+        data[f"net_{panel}"] = V
+        off = max(publish.deviations([(V, Q, *_isothermal.ANGLES)]))
+        claims[f"sampled_net_{panel}_max_deviation_deg"] = round(off, 6)
     nets = [(V, Q, *_isothermal.ANGLES) for V, Q in nets]
+    glides = optimised(around, t)
+    for panel, g in glides.items():
+        V = g.result.V
+        _panel(axes[panel], panel, V, g.Q, V[g.rows[:, PATCHES[panel[0]][4]]])
+        nets.append((V, g.Q, *g.angles))
+        data[f"net_{panel}"] = V
+    for row in distances(glides):
+        claims[f"off_surface_{row.panel}"] = round(row.off, 6)
+        claims[f"hausdorff_{row.panel}"] = [round(row.there, 6), round(row.back, 6)]
+    parameters = {"around": around, "t": t}
     return publish.Drawing(
-        "fig09",
-        figure,
-        "inetlib.drawings.fig09.draw",
-        {"around": around, "t": t},
-        data,
-        nets,
-        claims,
+        "fig09", figure, "inetlib.drawings.fig09.draw", parameters, data, nets, claims
     )
 
 
-def _surfaces(t):
+def optimised(around=20, t=45):
+    """The ten nets of columns 2 and 4 as {panel: Glide}, from "A2" and "A4" to "E4".
+
+    around, t: as in `draw`.  A Glide holds `.start` and `.result.V`, their common quads `.Q`,
+    the wanted `.angles`, the `.reference` surface, the `.diagonal` of the start's box and all
+    of `solver.optimize`'s result.  On the cylinder, the sphere, the catenoid and their images
+    the nets are closed, as long as the patch is one full turn (around=20).
+
+    Paper: Fig. 9, Sec. 6.
+    """
+    glides = {}
+    for start, (surface, z, _) in _starts(around, t).items():
+        column = int(start[1]) + 1
+        glides[f"{start[0]}{column}"] = _gliding.glide(surface, z, np.radians(GOALS[column]))
+    return glides
+
+
+def distances(glides):
+    """Rows (panel, printed, off, there, back) of the nets of `optimised`, as fractions.
+
+    off: the farthest vertex from the analytic surface; there, back: one-sided Hausdorff
+    distances between the optimised net and its start (`measure.hausdorff`), which see how far
+    the border has moved too; all over the diagonal of the start's bounding box, below 1e-9 as
+    0.  printed: the paper's number, in a unit that it does not state (E16), or None.
+
+    Paper: Fig. 9.
+    """
+    return _gliding.distances(glides)
+
+
+def _starts(around, t):
+    """The nets of columns 1 and 3, {panel: (surface, grid of parameters, line to highlight)}."""
+    step = 2 * np.pi / around
     found = surfaces.CYLINDER, surfaces.SPHERE, surfaces.CATENOID, surfaces.HELICOID
-    return dict(zip(NAMES, (*found, surfaces.conjugate(t)), strict=True))
+    starts = {}
+    for letter, surface in zip(NAMES, (*found, surfaces.conjugate(np.radians(t))), strict=True):
+        m, n, left, top, marked = PATCHES[letter]
+        z = _isothermal.domain(m, n, step, step * (left + 1j * top))
+        image = moebius.image(moebius.inversion(CENTRES[letter]), surface)
+        starts |= {f"{letter}1": (surface, z, marked), f"{letter}3": (image, z, marked)}
+    return starts
 
 
-def _panel(ax, degrees, V, Q, curve):
-    view = plot.camera(*np.radians(degrees))
+def _panel(ax, panel, V, Q, curve):
+    letter, column = panel[0], int(panel[1])
+    view = plot.camera(*np.radians((CAMERAS if column < 3 else IMAGE_CAMERAS)[letter]))
     lines = _isothermal.coloured(V, Q, {"v": 0.6, "u": 0.6})
     lines.append((curve, plot.COLOURS["u"], 2.2))
-    plot.scene(ax, view, V, Q, plot.shade(V, Q), lines).set_clip_on(False)  # a smaller file
+    scene = plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
+    _lighter.lighter(scene).set_clip_on(False)  # a smaller file
+    plot.panel(ax, f"{letter}_{column}", NAMES[letter] if column == 1 else "")
+    if letter == "A":
+        place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}
+        ax.annotate(TITLES[column], (0.5, 1), (0, 22), **place)

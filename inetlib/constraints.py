@@ -1,0 +1,212 @@
+"""Residuals and Jacobians of the optimisation: one equation, one short function.
+
+Every function takes the local variables of many places at once, x (f, k) with one row for
+each place, and returns (residual (f, q), jacobian (f, q, k)).  The corners of a face are the
+first 12 entries of its row, (x, y, z) of v1, v2, v3, v4; of a polyline's three neighbouring
+vertices 9, of a single vertex 3.  Auxiliary variables follow in the order that is stated.
+Where these rows sit in the unknowns, how they are weighted and solved, is not known here.
+
+Paper: Sec. 6.1, Sec. 6.3.
+"""
+
+import numpy as np
+
+# d1 = v3 - v1, d2 = v4 - v2, v3 + v4 - v1 - v2 and v1 + v4 - v2 - v3 (twice the medial
+# lines) in terms of the corners
+SIGNS = np.array([[-1, 0, 1, 0], [0, -1, 0, 1], [-1, -1, 1, 1], [1, -1, -1, 1]], dtype=float)
+
+
+def _vectors(x, rows):
+    """The chosen vectors of `SIGNS`, a list of (f, 3) arrays."""
+    return np.einsum("vc,fcx->vfx", SIGNS[rows], x[:, :12].reshape(-1, 4, 3))
+
+
+def _dot(a, b):
+    return np.einsum("...x,...x->...", a, b)
+
+
+def _by_corners(gradients, rows):
+    """Derivatives (f, 12) of a function with these gradients (v, f, 3) in the vectors `rows`."""
+    return np.einsum("vfx,vc->fcx", gradients, SIGNS[rows]).reshape(-1, 12)
+
+
+# --- the reduced formulation ------------------------------------------------------------
+
+
+def log_ratios(x):
+    """(log lam, log mu) of the faces: logarithms of |d2| / |d1| and |m13| / |m24|.
+
+    x: (f, 12).  Free of scale; subtract the wanted logarithms to get a residual.
+
+    Paper: Eq. (11), Eq. (12).
+    """
+    vectors = _vectors(x, [0, 1, 2, 3])
+    squares = _dot(vectors, vectors)
+    a, b, p, q = vectors / squares[..., None]  # gradients of log |.|
+    residual = 0.5 * np.log(np.stack([squares[1] / squares[0], squares[2] / squares[3]], axis=1))
+    jacobian = np.empty((len(x), 2, 4, 3))
+    jacobian[:, 0, 0], jacobian[:, 0, 2] = a, -a
+    jacobian[:, 0, 1], jacobian[:, 0, 3] = -b, b
+    jacobian[:, 1, 2], jacobian[:, 1, 3] = p + q, p - q
+    jacobian[:, 1, 0], jacobian[:, 1, 1] = -jacobian[:, 1, 2], -jacobian[:, 1, 3]
+    return residual, jacobian.reshape(-1, 2, 12)
+
+
+def scaled_ratios(x, lam, mu, sizes):
+    """(d2^2 - lam^2 d1^2) / (2 lam size1) and the same for m13, m24, mu and size2.
+
+    x: (f, 12); sizes: (f, 2), fixed positive numbers, best |d1| |d2| and |m13| |m24| at the
+    present net.  Then the derivatives are those of `log_ratios` at a solution, while the
+    residual stays a polynomial and does not explode where an edge collapses.
+
+    Paper: Eq. (11), Eq. (12) (squared and scaled).
+    """
+    d1, d2, p, q = vectors = _vectors(x, [0, 1, 2, 3])
+    vectors[2:] /= 2
+    scale = 2 * np.array([lam, mu]) * sizes
+    residual = np.stack(
+        [_dot(d2, d2) - lam**2 * _dot(d1, d1), _dot(p, p) - mu**2 * _dot(q, q)], axis=1
+    )
+    one = _by_corners(np.stack([-2 * lam**2 * d1, 2 * d2]), [0, 1])
+    two = _by_corners(np.stack([p, -(mu**2) * q]), [2, 3])
+    return residual / scale, np.stack([one, two], axis=1) / scale[..., None]
+
+
+def sizes(x):
+    """(|d1| |d2|, |m13| |m24|) of the faces, (f, 2): the scale of `scaled_ratios`; x: (f, 12).
+
+    Paper: Eq. (11), Eq. (12) (scale).
+    """
+    d1, d2, p, q = np.linalg.norm(_vectors(x, [0, 1, 2, 3]), axis=2)
+    return np.stack([d1 * d2, p * q / 4], axis=1)
+
+
+# --- the paper's formulation ------------------------------------------------------------
+
+
+def squared_diagonals(x):
+    """d1^2 - La and d2^2 - Lb; x: corners, La, Lb (f, 14).
+
+    Paper: Eq. (17).
+    """
+    return _squared(x, [0, 1])
+
+
+def squared_medials(x):
+    """(2 m13)^2 - Lp and (2 m24)^2 - Lq; x: corners, Lp, Lq (f, 14).
+
+    Paper: Eq. (18).
+    """
+    return _squared(x, [2, 3])
+
+
+def _squared(x, rows):
+    vectors = _vectors(x, rows)
+    jacobian = np.zeros((len(x), 2, 14))
+    for k in (0, 1):
+        jacobian[:, k, :12] = _by_corners(2 * vectors[k : k + 1], rows[k : k + 1])
+        jacobian[:, k, 12 + k] = -1
+    return _dot(vectors, vectors).T - x[:, 12:], jacobian
+
+
+def proportional(x):
+    """L - c K; x: (L, K, c), (f, 3).  Lb = c1 La, and Lp = c2 Lq (printed the other way round).
+
+    Paper: Eq. (17), Eq. (18).
+    """
+    L, K, c = x.T
+    return (L - c * K)[:, None], np.stack([np.ones_like(L), -c, -K], axis=1)[:, None]
+
+
+def square_root(x):
+    """lam^2 - c1, or mu^2 - c2; x: (ratio, its square), (f, 2).
+
+    Paper: Eq. (17), Eq. (18).
+    """
+    root, square = x.T
+    return (root**2 - square)[:, None], np.stack([2 * root, -np.ones_like(root)], 1)[:, None]
+
+
+def given(x, value):
+    """x - value for single variables, x: (f, 1): a ratio with a wanted value.
+
+    Paper: Eq. (19), Eq. (22).
+    """
+    return x - value, np.ones((len(x), 1, 1))
+
+
+def given_theta(x, theta):
+    """(1 + c1)(c2 - 1) - 2 cos theta lam (1 + c2); x: (lam, c1, c2), (f, 3).
+
+    Paper: Eq. (20).
+    """
+    lam, c1, c2 = x.T
+    k = 2 * np.cos(theta)
+    residual = (1 + c1) * (c2 - 1) - k * lam * (1 + c2)
+    return residual[:, None], np.stack([-k * (1 + c2), c2 - 1, 1 + c1 - k * lam], axis=1)[:, None]
+
+
+def given_theta0(x, theta0):
+    """(1 + c2)(c1 - 1) - 2 cos theta0 mu (1 + c1); x: (mu, c2, c1), (f, 3).
+
+    The same function of (mu, c2, c1) as `given_theta` of (lam, c1, c2).
+
+    Paper: Eq. (20).
+    """
+    return given_theta(x, theta0)
+
+
+def theta_quad(x):
+    """d2^2 - d1^2 - 2 d1 . d2, zero where theta = theta0; x: corners (f, 12).
+
+    Paper: Eq. (13), Eq. (21).
+    """
+    d1, d2 = _vectors(x, [0, 1])
+    residual = _dot(d2, d2) - _dot(d1, d1) - 2 * _dot(d1, d2)
+    gradient = _by_corners(np.stack([-2 * (d1 + d2), 2 * (d2 - d1)]), [0, 1])
+    return residual[:, None], gradient[:, None]
+
+
+def theta_ratio(theta):
+    """lam = mu of a theta-quad: cos theta + sqrt(1 + cos^2 theta).
+
+    Paper: Eq. (8), Eq. (22).
+    """
+    return np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
+
+
+# --- shape ------------------------------------------------------------------------------
+
+
+def fairness(x):
+    """2 v - left - right of three neighbours (left, v, right) of a polyline; x: (k, 9).
+
+    Paper: Sec. 6.3 (fairness).
+    """
+    jacobian = np.kron(np.array([-1.0, 2.0, -1.0]), np.eye(3))
+    return x @ jacobian.T, np.broadcast_to(jacobian, (len(x), 3, 9))
+
+
+def closeness(x, before):
+    """v - its position one iteration before; x, before: (k, 3).
+
+    Paper: Sec. 6.3 (self-closeness).
+    """
+    return x - before, np.broadcast_to(np.eye(3), (len(x), 3, 3))
+
+
+def approximation(x, feet, normals):
+    """(v - p) . n, the distance from the tangent plane at the closest point; all (k, 3).
+
+    Paper: Sec. 6.3 (approximation).
+    """
+    return _dot(x - feet, normals)[:, None], normals[:, None]
+
+
+def gliding(x, feet, e2, e3):
+    """((v - p) . e2, (v - p) . e3): the distance from the tangent of the boundary; all (k, 3).
+
+    Paper: Sec. 6.3 (boundary gliding).
+    """
+    frame = np.stack([e2, e3], axis=1)
+    return np.einsum("kqx,kx->kq", frame, x - feet), frame

@@ -1,0 +1,110 @@
+"""Fig. 12: one freeform patch, optimised to five isogonal nets."""
+
+import numpy as np
+from matplotlib.colors import Normalize
+
+from .. import measure, plot, publish, reference, solver, surfaces
+from . import _optimised
+
+SETTINGS = {  # degrees; what is not given is found
+    "A": {},
+    "B": {"theta": 90},
+    "C": {"theta0": 90},
+    "D": {"theta": 90, "theta0": 90},
+    "E": {"theta": 60, "theta0": 60},
+}
+ITERATIONS = {"A": 12, "B": 17, "C": 17, "D": 17, "E": 17}  # of the paper's formulation
+TITLES = {
+    "A": "general",
+    "B": r"rectangles, $\mu=1$",
+    "C": r"rhombuses, $\lambda=1$",
+    "D": r"squares, $\lambda=\mu=1$",
+    "E": r"parallelograms, $\lambda=\mu$",
+}
+
+
+def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
+    """The start and the five nets: (V, Q, {"A": `solver.Result`, ... "E"}).
+
+    formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations and
+    goes to the angles at once.  m, n: quads each way.
+
+    Paper: Fig. 12, Table 1.
+    """
+    V, Q = surfaces.freeform_patch(m, n)
+    near = reference.mesh(V, Q)
+    found = {}
+    for letter, angles in SETTINGS.items():
+        way = {"iterations": ITERATIONS[letter], "via": "jump"} if formulation == "paper" else {}
+        found[letter] = solver.optimize(
+            V,
+            Q,
+            **{name: np.radians(x) for name, x in angles.items()},
+            reference=near,
+            weights=weights,
+            formulation=formulation,
+            **way,
+        )
+    return V, Q, found
+
+
+def draw(m=20, n=20, azimuth=-62, elevation=42):
+    """A patch and the five isogonal nets it is optimised to, with their parallelograms.
+
+    m, n: quads each way; azimuth, elevation: the camera, degrees.  The start is coloured by
+    the larger deviation of theta and theta0 from their means.  Each panel shows four faces
+    enlarged.  Returns a `publish.Drawing`.
+
+    Paper: Fig. 12.
+    """
+    V, Q, found = nets(m=m, n=n)
+    figure, axes = plot.canvas([["start", "A", "B"], ["C", "D", "E"]], 7.4, 5.8)
+    view = plot.camera(*np.radians([azimuth, elevation]))
+    at = _four(m, n)
+    off = _deviation(V, Q)
+    scale = Normalize(0, 5 * np.ceil(off.max() / 5))
+    _panel(axes["start"], view, V, Q, at, _optimised.DEVIATION(scale(off))[:, :3])
+    axes["start"].set_title("the start", loc="left")
+    _optimised.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])
+    for letter, result in found.items():
+        _panel(axes[letter], view, result.V, Q, at)
+        plot.panel(axes[letter], letter, TITLES[letter])
+        _words(axes[letter], letter, result)
+    _optimised.align(list(axes.values()), 0.42)
+    parameters = {"m": m, "n": n, "azimuth": azimuth, "elevation": elevation}
+    data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
+    return publish.Drawing(
+        "fig12",
+        figure,
+        "inetlib.drawings.fig12.draw",
+        parameters,
+        {name: np.round(x, _optimised.DIGITS) for name, x in data.items()},
+        [(r.V, Q, r.theta, r.theta0) for r in found.values()],
+        _optimised.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
+    )
+
+
+def _deviation(V, Q):
+    """The larger deviation of theta and theta0 of each face from the means, degrees."""
+    return np.degrees(np.max([np.abs(x - x.mean()) for x in measure.angles(V, Q)], axis=0))
+
+
+def _four(m, n):
+    """The numbers of four faces in the middle of the patch."""
+    i, j = np.meshgrid(m // 2 - np.arange(2), n // 2 - np.arange(2), indexing="ij")
+    return (i * n + j).ravel()
+
+
+def _panel(ax, view, V, Q, at, colours=_optimised.EXACT):
+    _optimised.surface(ax, view, V, Q, colours, [_optimised.outline(V, Q[at])])
+    four = colours if isinstance(colours, str) else colours[at]
+    _optimised.enlarged(_optimised.inset(ax, [0, 0, 0.42, 0.33]), V, Q, at, four)
+
+
+def _words(ax, letter, result):
+    texts = []
+    for name, symbol in (("theta", r"\theta"), ("theta0", r"\theta_0")):
+        digits = 0 if name in SETTINGS[letter] else 2
+        texts.append(rf"${symbol}={np.degrees(getattr(result, name)):.{digits}f}\degree$")
+    texts.append(f"{len(result.history) - 1} steps")
+    ax.text(0.5, 0.15, "\n".join(texts), transform=ax.transAxes, va="center", linespacing=1.4)

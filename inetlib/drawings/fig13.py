@@ -1,0 +1,132 @@
+"""Fig. 13: a mesh around a hexagon, optimised to two isogonal nets, and their Moebius images."""
+
+import numpy as np
+from matplotlib.colors import Normalize
+
+from .. import measure, mesh, moebius, plot, publish, reference, solver
+from . import _optimised
+
+SETTINGS = {"A": {"theta": 60, "theta0": 60}, "B": {"theta": 60, "theta0": 45}}  # degrees
+ITERATIONS = {"A": 12, "B": 12}  # of the paper's formulation
+SIDES, RINGS = 6, 8
+CENTRE, RADIUS = (-0.2, 0.1, -0.25), 0.3
+MARKED = 425  # the vertex whose four faces are enlarged
+HEXAGON = "#7b2d8b"
+
+
+def start(dome=0.45, wave=0.1):
+    """A hexagon and eight rings of quads on a dome with six waves: (V, Q, polygon).
+
+    dome, wave: height and depth of the waves along the boundary, in radii of the mesh; the
+    bounding box gets the diagonal 1.
+
+    Paper: Fig. 13.
+    """
+    V, Q, polygon = mesh.polygon_rings(SIDES, RINGS)
+    z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
+    r, waves = np.abs(z), np.real((z / np.abs(z)) ** SIDES)
+    V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * waves], axis=1)
+    return V / np.linalg.norm(np.ptp(V, axis=0)), Q, polygon
+
+
+def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
+    """The start and the two nets: (V, Q, polygon, {"A": `solver.Result`, "B"}).
+
+    formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations.  The
+    wanted angles change step by step from those of the start.
+
+    Paper: Fig. 13, Table 1.
+    """
+    V, Q, polygon = start(dome, wave)
+    near = reference.mesh(V, Q)
+    found = {}
+    for letter, angles in SETTINGS.items():
+        found[letter] = solver.optimize(
+            V,
+            Q,
+            *np.radians([angles["theta"], angles["theta0"]]),
+            reference=near,
+            weights=weights,
+            polygons=[polygon],
+            formulation=formulation,
+            iterations=ITERATIONS[letter] if formulation == "paper" else None,
+        )
+    return V, Q, polygon, found
+
+
+def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
+    """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
+
+    dome, wave: of the `start`; azimuth, elevation: the camera, degrees.  The images keep the
+    connectivity, and the angles up to the size of the quads: they are coloured by the larger
+    deviation of theta and theta0 from those of the net.  Returns a `publish.Drawing`.
+
+    Paper: Fig. 13.
+    """
+    V, Q, polygon, found = nets(dome=dome, wave=wave)
+    figure, axes = plot.canvas([["start", "A", "B"], ["steps", "A'", "B'"]], 7.4, 5.6)
+    view = plot.camera(*np.radians([azimuth, elevation]))
+    images = {k: moebius.apply(moebius.inversion(CENTRE, RADIUS), r.V) for k, r in found.items()}
+    off = {k: _deviation(images[k], Q, r) for k, r in found.items()}
+    scale = Normalize(0, np.ceil(10 * max(x.max() for x in off.values())) / 10)
+    four = np.flatnonzero((Q == MARKED).any(axis=1))
+    _net(axes["start"], view, V, Q, polygon)
+    axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")
+    for letter, result in found.items():
+        _net(axes[letter], view, result.V, Q, polygon, marked=four)
+        _optimised.enlarged(_optimised.inset(axes[letter], [0.5, 0, 0.5, 0.27]), result.V, Q, four)
+        plot.panel(axes[letter], letter, _words(**SETTINGS[letter]))
+        colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
+        _net(axes[letter + "'"], view, images[letter], Q, polygon, colours)
+        plot.panel(axes[letter + "'"], letter + "'", f"Moebius image of {letter}")
+    _history(axes["steps"], found)
+    _optimised.bar(axes["A'"], scale, [0.68, 0.9, 0.6, 0.035])
+    _optimised.align([axes[k] for k in ("start", "A", "B")], 0.15)
+    _optimised.align([axes[k] for k in ("A'", "B'")], 0.1)
+    numbers = {f"{k}'_max_deviation_deg": round(float(x.max()), 6) for k, x in off.items()}
+    data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
+    data |= {f"image_{k}": W for k, W in images.items()}
+    return publish.Drawing(
+        "fig13",
+        figure,
+        "inetlib.drawings.fig13.draw",
+        {"dome": dome, "wave": wave, "azimuth": azimuth, "elevation": elevation},
+        {name: np.round(x, _optimised.DIGITS) for name, x in data.items()},
+        [(r.V, Q, r.theta, r.theta0) for r in found.values()],
+        _optimised.claims(found, Q) | numbers,
+    )
+
+
+def _deviation(V, Q, result):
+    """The larger deviation of theta and theta0 of each face from those of the net, degrees."""
+    asked = result.theta, result.theta0
+    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), asked, strict=True)]
+    return np.degrees(np.max(off, axis=0))
+
+
+def _words(theta, theta0):
+    if theta == theta0:
+        return rf"$\theta=\theta_0={theta}\degree$"
+    return rf"$\theta={theta}\degree,\ \theta_0={theta0}\degree$"
+
+
+def _net(ax, view, V, Q, polygon, colours=_optimised.EXACT, marked=()):
+    corners = V[polygon]
+    lines = [(np.concatenate([corners, corners[:1]]), plot.INK, 1.0)]
+    if len(marked):
+        lines.append(_optimised.outline(V, Q[marked]))
+    _optimised.surface(ax, view, V, Q, colours, lines, [(corners, HEXAGON)])
+
+
+def _history(ax, found):
+    """The largest deviation of the angles after each step."""
+    ax.set_title("the largest deviation, degrees", loc="left")
+    ax = ax.inset_axes([0.16, 0.15, 0.76, 0.8])
+    for (letter, result), style, side in zip(found.items(), ("o-", "s--"), (-1, 1), strict=True):
+        off = np.maximum(np.degrees([step.deviation for step in result.history]), 1e-12)
+        ax.semilogy(off, style, ms=4, color=plot.INK, mfc="white")
+        place, shift = (len(off) - 2, off[-2]), (12 * side, 0)
+        ax.annotate(letter, place, shift, textcoords="offset points", ha="center", va="center")
+    ax.set(xlabel="steps", xlim=(-0.4, max(len(r.history) for r in found.values())))
+    ax.set_yticks([1, 1e-4, 1e-8, 1e-12])
+    ax.minorticks_off()

@@ -1,0 +1,99 @@
+"""Table 1: the printed statistics beside ours, in both formulations."""
+
+import csv
+import io
+
+import numpy as np
+
+from .. import measure, publish
+from ..problem import PAPER
+from . import _optimised, fig12, fig13
+
+# F, #var, #cons, residual, iterations, seconds per iteration
+PRINTED = {
+    "12A": (400, 3728, 3201, "1.2e-12", 12, 0.127),
+    "12B": (400, 3728, 3601, "3.1e-12", 17, 0.121),
+    "12C": (400, 3728, 3601, "2.9e-13", 17, 0.122),
+    "12D": (400, 2126, 1602, "1.6e-12", 17, 0.107),
+    "12E": (400, 2126, 1602, "1.1e-8", 17, 0.116),
+    "13A": (433, 2323, 1730, "3.6e-12", 12, 0.17),
+    "13B": (433, 4052, 4321, "3.8e-10", 12, 0.165),
+}
+HEADER = [
+    *("Fig.", "formulation", "F", "#var", "#cons", "residual", "#iter"),
+    *("max dtheta", "max dtheta0", "mean dtheta", "mean dtheta0", "flips", "area ratio"),
+]
+VARIANTS = {  # formulation and weights
+    "paper's, printed weights": ("paper", PAPER),
+    "paper's, small weights": ("paper", _optimised.WEIGHTS),
+    "ratios": ("ratio", _optimised.WEIGHTS),
+}
+NOISE = 1e-20  # residuals below are rounding errors
+
+
+def results(name):
+    """The seven optimised nets of one of `VARIANTS`: {row: (Q, `solver.Result`)}.
+
+    Paper: Table 1.
+    """
+    formulation, weights = VARIANTS[name]
+    found = {}
+    for figure, module in (("12", fig12), ("13", fig13)):
+        _, Q, *_, nets = module.nets(formulation, weights=weights)
+        found |= {figure + letter: (Q, result) for letter, result in nets.items()}
+    return found
+
+
+def rows(variants):
+    """The lines of the table as lists of strings; variants: {name: its `results`}.
+
+    Deviations are degrees from the wanted (or found) angles, over all faces.
+
+    Paper: Table 1, App. A.4.
+    """
+    lines = []
+    for row, (F, variables, constraints, residual, steps, _) in PRINTED.items():
+        printed = [F, variables, constraints, residual, steps]
+        lines.append([row, "printed", *map(str, printed), *6 * ["-"]])
+        lines += [[row, name, *_row(*nets[row])] for name, nets in variants.items()]
+    return lines
+
+
+def _row(Q, found):
+    residual = found.history[-1].residual
+    quality = measure.quality(found.V, Q)
+    pairs = zip(measure.angles(found.V, Q), (found.theta, found.theta0), strict=True)
+    spreads = [measure.spread(a, target) for a, target in pairs]
+    off = [s.max_deviation for s in spreads] + [s.mean_deviation for s in spreads]
+    return [
+        *map(str, (len(Q), *found.sizes)),
+        f"{residual:.0e}" if residual > NOISE else "< 1e-20",
+        str(len(found.history) - 1),
+        *(_degrees(x) for x in np.degrees(off)),
+        str(quality.flips),
+        f"{quality.area_ratio:.3f}",
+    ]
+
+
+def _degrees(x):
+    return f"{x:.2g}" if x > 1e-9 else "< 1e-9"
+
+
+def markdown(lines):
+    """The table as Markdown text.
+
+    Paper: Table 1.
+    """
+    table = [HEADER, ["---"] * len(HEADER), *lines]
+    return "".join(f"| {' | '.join(line)} |\n" for line in table)
+
+
+def save(lines, folder):
+    """Write folder/table1.md and folder/table1.csv.
+
+    Paper: Table 1.
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([HEADER, *lines])
+    publish.save_text(markdown(lines), f"{folder}/table1.md")
+    publish.save_text(text.getvalue(), f"{folder}/table1.csv")

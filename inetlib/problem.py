@@ -1,0 +1,216 @@
+"""An optimisation problem: the checked input, and all that stays the same from step to step.
+
+Paper: Sec. 6.3.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import csr_array, diags_array, kron
+
+from . import adjacency, constraints, linear, measure, mesh
+from .goals import Goal
+
+FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
+
+
+class Weights(NamedTuple):
+    """Weights of the shape energies, numbers >= 0 or arrays (n,), one number a vertex.
+
+    fairness (omega_2), closeness (omega_3), approximation (omega_4), boundary (omega_5).
+    The formulation "ratio" compares them with logarithms of ratios, lengths in mean edges;
+    "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`.
+
+    Paper: Sec. 6.3 (weights).
+    """
+
+    fairness: float | np.ndarray = 0.02
+    closeness: float | np.ndarray = 0.001
+    approximation: float | np.ndarray = 0.1
+    boundary: float | np.ndarray = 0.0003
+
+
+PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.01)
+
+
+class Problem(NamedTuple):
+    """A checked problem; arrays as in `problem`, `edge` the mean length of an edge."""
+
+    V: np.ndarray
+    Q: np.ndarray
+    goal: Goal
+    weights: Weights
+    reference: object
+    on_surface: bool
+    mobility: np.ndarray
+    boundary: np.ndarray
+    fair: csr_array
+    neighbours: np.ndarray
+    edge: float
+
+
+def problem(
+    V,
+    Q,
+    goal,
+    weights=None,
+    reference=None,
+    on_surface=False,
+    fixed=None,
+    mobility=None,
+    polygons=(),
+):
+    """The `Problem` of a labelled mesh, or a ValueError that says what is wrong with the input.
+
+    V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
+    fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
+    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net.
+
+    Paper: Sec. 6.3.
+    """
+    V, Q = _checked_mesh(V, Q)
+    count = len(V)
+    weights = _checked_weights(weights or Weights(), count)
+    boundary = _boundary(Q, polygons)
+    mobility = _checked_mobility(mobility, count) * ~_mask(fixed, boundary, count)
+    if not mobility.any():
+        raise ValueError("no vertex is free to move: fix fewer")
+    if reference is None:
+        if on_surface:
+            raise ValueError("on_surface=True needs a reference surface")
+    else:
+        _check_distance(V, reference)
+    triples = adjacency.triples(Q)
+    edge = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean()
+    fair = _fairness(triples, weights.fairness, count)
+    neighbours = adjacency.face_neighbours(Q)
+    return Problem(
+        V,
+        Q,
+        goal,
+        weights,
+        reference,
+        on_surface,
+        mobility,
+        boundary,
+        fair,
+        neighbours,
+        float(edge),
+    )
+
+
+def shape(problem, V):
+    """Matrix (3 n, 3 n) and half gradient (3 n,) of the energies of fairness, approximation
+    and boundary gliding at the net V; the last two only with a reference.
+
+    Paper: Sec. 6.3 (target function).
+    """
+    A, g = problem.fair, problem.fair @ V.ravel()
+    if problem.reference is None:
+        return A, g
+    weights = problem.weights
+    terms = []
+    feet, normals = problem.reference.closest(V)
+    terms.append(
+        (np.arange(len(V)), weights.approximation, constraints.approximation(V, feet, normals))
+    )
+    if weights.boundary.any() and problem.reference.has_boundary and problem.boundary.size:
+        at = problem.boundary
+        feet, _, e2, e3 = problem.reference.boundary(V[at])
+        terms.append((at, weights.boundary[at], constraints.gliding(V[at], feet, e2, e3)))
+    for at, weight, (residual, jacobian) in terms:
+        J = linear.rows(jacobian, linear.coordinates(at[:, None]), V.size)
+        W = diags_array(np.repeat(weight, residual.shape[1]))
+        A = A + J.T @ W @ J
+        g = g + J.T @ (W @ residual.ravel())
+    return A, g
+
+
+def _checked_mesh(V, Q):
+    if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
+        face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
+        raise ValueError(
+            f"face {face} has {np.size(Q[face])} corners: give the quads as Q "
+            "and the other faces as polygons=[...]"
+        )
+    V, Q = mesh.check(V, Q)
+    if not mesh.is_labelled(Q):
+        raise ValueError("the faces do not agree on u and v: call mesh.label first")
+    measure.quality(V, Q)  # refuses collapsed faces
+    return V, Q
+
+
+def _checked_weights(weights, count):
+    found = {}
+    for name, value in zip(Weights._fields, weights, strict=True):
+        value = np.asarray(value, dtype=float)
+        if value.ndim and value.shape != (count,):
+            raise ValueError(
+                f"weights.{name} has the shape {value.shape}: one number, or one for each of "
+                f"the {count} vertices, is wanted"
+            )
+        if not (np.isfinite(value).all() and (value >= 0).all()):
+            raise ValueError(f"weights.{name} = {value.min():.6g}: weights are finite and >= 0")
+        found[name] = np.broadcast_to(value, (count,))
+    return Weights(**found)
+
+
+def _checked_mobility(mobility, count):
+    if mobility is None:
+        return np.ones(count)
+    mobility = np.asarray(mobility, dtype=float)
+    if mobility.shape != (count,) or not np.isfinite(mobility).all() or (mobility < 0).any():
+        raise ValueError(f"mobility: {count} finite numbers >= 0 are wanted, one for each vertex")
+    return mobility
+
+
+def _mask(fixed, boundary, count):
+    mask = np.zeros(count, dtype=bool)
+    if fixed is None:
+        return mask
+    if isinstance(fixed, str):
+        if fixed != "boundary":
+            raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
+        mask[boundary] = True
+        return mask
+    fixed = np.asarray(fixed)
+    if fixed.dtype == bool and fixed.shape != (count,):
+        raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
+    if fixed.dtype != bool and fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
+        raise ValueError(f"fixed names a vertex that is not there: 0 to {count - 1} are wanted")
+    mask[fixed if fixed.size else []] = True
+    return mask
+
+
+def _boundary(Q, polygons):
+    """The vertices on the boundary, without the rims of the given polygons."""
+    loops = adjacency.boundary_loops(Q)
+    sets = [frozenset(loop.tolist()) for loop in loops]
+    for polygon in polygons:
+        rim = frozenset(np.asarray(polygon).ravel().tolist())
+        if rim not in sets:
+            raise ValueError(
+                f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must "
+                "be all the vertices of one boundary loop"
+            )
+        loops.pop(sets.index(rim))
+        sets.remove(rim)
+    return np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
+
+
+def _check_distance(V, reference):
+    feet, _ = reference.closest(V)
+    apart = np.linalg.norm(V - feet, axis=1).mean() / reference.diagonal
+    if not apart < FAR:
+        raise ValueError(
+            f"the reference surface is far away: {apart:.3g} of its bounding-box diagonal on "
+            f"average, at most {FAR} is wanted; bring both into one coordinate system"
+        )
+
+
+def _fairness(triples, weights, count):
+    """The matrix of sum w |2 v - left - right|^2, (3 n, 3 n)."""
+    _, jacobian = constraints.fairness(np.zeros((len(triples), 9)))
+    scalar = linear.rows(jacobian[:, :1, ::3], triples, count)
+    scalar = scalar.T @ (scalar * weights[triples[:, 1]][:, None])
+    return kron(scalar, np.eye(3), format="csr")

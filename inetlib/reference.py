@@ -1,0 +1,212 @@
+"""Reference surfaces: closest points on them, and how the surface and its boundary run there.
+
+The constraints ask a `Reference` for closest points, normals and boundary frames only, so a
+mesh and an analytic surface look the same to them.
+
+Paper: Sec. 6.3 (approximation, boundary gliding).
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import igl
+import numpy as np
+
+from . import nearest
+from .adjacency import opposites
+from .mesh import triangles
+
+CORNER = np.radians(30)  # a boundary that turns by more at a vertex has a corner there
+
+
+class Reference(NamedTuple):
+    """A reference surface, made by `mesh` or `parametric`.
+
+    closest(points)   closest points and unit normals of the surface there, each (k, 3)
+    boundary(points)  closest points on the boundary and an orthonormal frame e1, e2, e3
+                      there, each (k, 3): e1 along the boundary, e3 normal to the surface.
+                      It stands for the Frenet frame, which a straight boundary does not
+                      have; the energies depend on the plane of e2 and e3 only.
+    diagonal          the diagonal of the bounding box
+    V, F              the triangles, None for a parametric reference
+    has_boundary      whether there is a boundary to ask for
+
+    points: (k, 3), finite, else ValueError.
+    """
+
+    closest: Callable
+    boundary: Callable
+    diagonal: float
+    V: np.ndarray | None = None
+    F: np.ndarray | None = None
+    has_boundary: bool = False
+
+
+# --- meshes -------------------------------------------------------------------------------
+
+
+def mesh(V, F):
+    """The `Reference` of a mesh of triangles (f, 3) or quads (f, 4) with vertices V (n, 3).
+
+    A quad is two triangles, cut along its shorter diagonal.  Closest points are exact points
+    of the triangles; normals are interpolated between the vertex normals (weighted by the
+    angles of the faces), so that they have no jump at an edge, and are those of the face
+    where that degenerates.  Along the boundary e1 is interpolated in the same way, with the
+    mesh on its left; at corners, where the boundary turns by more than 30 degrees, it is the
+    direction of the segment hit (at the corner itself, of either).  A closed surface has no
+    boundary: asking is a ValueError.
+
+    ValueError for faces that are no oriented manifold, and for triangles without area.
+
+    Paper: Sec. 6.3 (approximation).
+    """
+    sides = np.shape(F)[-1] if np.ndim(F) else 0
+    V, F = (a.copy() for a in triangles(V, F))  # later changes of V do not change the tree
+    face = _face_normals(V, F, per=2 if sides == 4 else 1)
+    open_edges = np.flatnonzero(opposites(F) < 0)
+    _refuse_fans(F)
+    smooth = igl.per_vertex_normals(V, F, igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE)
+    smooth = np.nan_to_num(smooth)  # unused vertices, and normals that cancel
+    tree = igl.AABB()
+    tree.init(V, F)
+
+    def closest(points):
+        _, hit, feet = tree.squared_distance(V, F, _points(points))
+        weights = _barycentric(feet, *np.moveaxis(V[F[hit]], 1, 0))
+        normals = np.einsum("kc,kcx->kx", weights, smooth[F[hit]])
+        return feet, _unit_or(normals, face[hit])
+
+    used = V[np.unique(F)]
+    diagonal = float(np.linalg.norm(np.ptp(used, axis=0)))
+    rim = _boundary(V, F, open_edges, smooth, face)
+    return Reference(closest, rim, diagonal, V, F, bool(open_edges.size))
+
+
+def _face_normals(V, F, per):
+    """Unit normals of the triangles; ValueError names a face, of `per` triangles, without area."""
+    a, b, c = np.moveaxis(V[F], 1, 0)
+    normals = np.cross(b - a, c - a)
+    area = np.linalg.norm(normals, axis=1)
+    longest = np.max([np.sum((p - q) ** 2, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    flat = ~(area > 1e-12 * longest)
+    if flat.any():
+        what = "its triangle" if per == 2 else "the triangle"
+        where = np.argmax(flat)
+        raise ValueError(
+            f"face {where // per} has no area: {what} {F[where].tolist()} is a line or a point"
+        )
+    return normals / area[:, None]
+
+
+def _refuse_fans(F):
+    pinched = ~igl.is_vertex_manifold(F)
+    pinched = np.intersect1d(np.flatnonzero(pinched), F)  # igl counts unused vertices too
+    if pinched.size:
+        raise ValueError(f"the faces at vertex {pinched[0]} form two fans: not a manifold")
+
+
+def _barycentric(p, a, b, c):
+    """Barycentric coordinates (k, 3) of points p of the triangles a, b, c, each (k, 3)."""
+    u, v, w = b - a, c - a, p - a
+    products = ((u, u), (u, v), (v, v), (w, u), (w, v))
+    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", x, y) for x, y in products)
+    area = uu * vv - uv * uv
+    second, third = (vv * wu - uv * wv) / area, (uu * wv - uv * wu) / area
+    return np.clip(np.stack([1 - second - third, second, third], axis=1), 0, 1)
+
+
+def _unit_or(vectors, other):
+    """The vectors at unit length, or the other ones where they vanish or point against those."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    good = (np.einsum("ij,ij->i", vectors, other) > 1e-6)[:, None]
+    return np.where(good, vectors / np.where(good, length, 1), other)
+
+
+def _boundary(V, F, half, smooth, face):
+    """The callable `Reference.boundary` for the boundary half-edges `half` of the triangles."""
+    if not half.size:
+        return _no_boundary("the reference is a closed surface: it has no boundary")
+    edges = np.stack([F.ravel()[half], np.roll(F, -1, axis=1).ravel()[half]], axis=1)
+    owner = face[half // 3]
+    along = V[edges[:, 1]] - V[edges[:, 0]]
+    length = np.linalg.norm(along, axis=1)
+    along /= length[:, None]
+    tangents = _vertex_tangents(edges, along)
+    tree = igl.AABB()
+    tree.init(V, edges)
+
+    def boundary(points):
+        _, hit, feet = tree.squared_distance(V, edges, _points(points))
+        t = np.einsum("ij,ij->i", feet - V[edges[hit, 0]], along[hit]) / length[hit]
+        weights = np.clip(np.stack([1 - t, t], axis=1), 0, 1)[..., None]
+        e1 = _unit_or(np.sum(weights * tangents[hit], axis=1), along[hit])
+        plain = _across(owner[hit], e1)  # never short: e1 is close to the edge
+        plain /= np.linalg.norm(plain, axis=1, keepdims=True)
+        e3 = _unit_or(_across(np.sum(weights * smooth[edges[hit]], axis=1), e1), plain)
+        return feet, e1, np.cross(e3, e1), e3
+
+    return boundary
+
+
+def _across(vectors, e1):
+    """The parts of the vectors that are orthogonal to the unit vectors e1."""
+    return vectors - np.sum(vectors * e1, axis=1, keepdims=True) * e1
+
+
+def _vertex_tangents(edges, along):
+    """Tangents (e, 2, 3) at both ends of the boundary edges, the edge's own at corners."""
+    before = np.empty(edges.max() + 1, dtype=np.int64)
+    after = before.copy()
+    after[edges[:, 0]] = before[edges[:, 1]] = np.arange(len(edges))
+    one, two = along[before[edges]], along[after[edges]]
+    smooth = np.einsum("ecx,ecx->ec", one, two) > np.cos(CORNER)
+    mean = one + two
+    mean /= np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300)
+    return np.where(smooth[..., None], mean, along[:, None])
+
+
+def _no_boundary(words):
+    def boundary(points):
+        raise ValueError(words)
+
+    return boundary
+
+
+def _points(points):
+    points = np.ascontiguousarray(points, dtype=float)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"points have the shape {points.shape}: rows of three are wanted")
+    if not np.isfinite(points).all():
+        bad = np.argmin(np.isfinite(points).all(axis=1))
+        raise ValueError(f"point {bad} has a coordinate that is not a finite number")
+    return points
+
+
+# --- analytic surfaces --------------------------------------------------------------------
+
+
+def parametric(point, u, v, tangents=None):
+    """The `Reference` of the surface point(u, v) over u[0] <= u <= u[1], v[0] <= v <= v[1].
+
+    point     takes two arrays of one shape, returns points (..., 3), smooth in u and v
+    u, v      the domain, two numbers each
+    tangents  takes the same, returns the pair (X_u, X_v), each (..., 3); default: finite
+              differences, for features of the surface wider than a tenth of the domain
+
+    The closest point is searched by Newton steps from the nearest of 201 x 201 samples, to
+    about 1e-12 of the surface's size; of sheets that come closer to each other than the
+    samples are apart, another than the nearest may be found.  The surface goes on for a
+    tenth of the domain on all sides, if `point` does, else it ends with the domain, and its
+    last 0.15 % know their tangents to about 1e-6 only.  Where the parametrisation has a pole,
+    the normal of a point close by is taken.  Parametric references know no boundary: asking
+    is a ValueError.
+
+    Paper: Sec. 6.3 (approximation).
+    """
+    surface = nearest.patch(point, u, v, tangents)
+
+    def closest(points):
+        return nearest.closest(surface, _points(points))
+
+    words = "a parametric reference knows no boundary: use reference.mesh for boundary gliding"
+    return Reference(closest, _no_boundary(words), surface.size)

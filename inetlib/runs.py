@@ -1,0 +1,210 @@
+"""The runs of an optimisation: which step comes next, what came of it, which net was best.
+
+Paper: Sec. 6.2, Sec. 6.3.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from tqdm import tqdm
+
+from . import goals, guided, measure, steps
+from .parallelogram import angles as exact_angles
+
+STARTS = {
+    "medials": {"theta0": np.pi / 2},
+    "diagonals": {"theta": np.pi / 2},
+    "squares": {"theta": np.pi / 2, "theta0": np.pi / 2},
+}
+STRIDES = 1, 1 / 3, 1 / 9  # times the stride, one after the other when a run fails
+ANGLE_STEPS = 25  # at most, in one run
+PARTS = 1, 1 / 2, 1 / 4, 1 / 8, 1 / 16  # of a step, when free ratios leave their range
+WORSE = 3  # angle steps in a row without progress end a run
+
+
+class Step(NamedTuple):
+    """One iteration: `kind` is "shape", "angle" or "guided"; angles in radians.
+
+    residual: sum of the squared residuals of the formulation's equations after the step;
+    theta_max ... theta0_mean: deviation of the angles from those of the final goal;
+    size: the longest way of a vertex; flips: flipped faces; goal: that of this step.
+    """
+
+    kind: str
+    goal: goals.Goal
+    residual: float
+    theta_max: float
+    theta_mean: float
+    theta0_max: float
+    theta0_mean: float
+    size: float
+    flips: int
+
+    @property
+    def deviation(self):
+        """The larger of theta_max and theta0_max."""
+        return max(self.theta_max, self.theta0_max)
+
+
+class Log:
+    """The history of a run, its best net, its clock, and the judge of every step.
+
+    best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback.
+    """
+
+    def __init__(self, given, tolerance, progress, callback):
+        self.given, self.callback = given, callback
+        self.tolerance = max(tolerance, _rounding(given.V, given.Q))
+        self.history, self.seconds = [], {}
+        self.best = None
+        self.stopped = False
+        self.bar = tqdm(disable=not progress, unit=" steps", desc="start")
+        self.record("start", given.goal, given.V, freedom(given, given.V), 0.0)
+
+    def record(self, kind, goal, V, s, size, residual=None):
+        """Judge the net V, remember it if it is the best; the `Step`, None if V is no net."""
+        with steps.timed(self.seconds, "check"):
+            step = self._judge(kind, goal, V, s, size, residual)
+        if step is None:
+            return None
+        self.history.append(step)
+        key = step.flips, step.deviation
+        if self.best is None or key < self.best[0]:
+            self.best = key, V, s
+        self.bar.set_description(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
+        self.bar.update()
+        if kind != "start" and self.callback is not None:
+            self.stopped = self.callback(step, V) is False
+        return step
+
+    def _judge(self, kind, goal, V, s, size, residual):
+        if not np.isfinite(V).all():
+            return None
+        try:
+            theta, theta0 = measure.angles(V, self.given.Q)
+            flips = len(measure.flipped(V, self.given.Q, self.given.neighbours))
+            logs = goals.logs(self.given.goal, s)[0]
+            wanted = exact_angles(*np.exp(logs))
+        except ValueError:  # a face has collapsed, or free ratios have left the range of Eq. (4)
+            return None
+        if residual is None:
+            found = np.log(np.stack(measure.ratios(V, self.given.Q), axis=1))
+            residual = np.sum((found - logs) ** 2)
+        off = [np.abs(a - b) for a, b in zip((theta, theta0), wanted, strict=True)]
+        spread = [float(f(x)) for x in off for f in (np.max, np.mean)]
+        return Step(kind, goal, float(residual), *spread, float(size), flips)
+
+    @property
+    def done(self):
+        """Whether the last net has its angles and no flipped face, or a caller said stop."""
+        last = self.history[-1]
+        return self.stopped or (last.deviation <= self.tolerance and last.flips == 0)
+
+
+def _rounding(V, Q):
+    """The angle by which rounding of the coordinates may turn the shortest edge."""
+    shortest = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).min()
+    return 8 * np.spacing(np.abs(V).max()) / shortest
+
+
+def freedom(given, V, goal=None):
+    """The freedom s of the goal that fits the mean logarithms of the net's ratios.
+
+    Paper: Sec. 6.2.
+    """
+    lam, mu = measure.ratios(V, given.Q)
+    return goals.freedom(goal or given.goal, (np.log(lam).mean(), np.log(mu).mean()))
+
+
+# --- the way to the angles --------------------------------------------------------------
+
+
+def _way(given, V, via, stride):
+    """The goals of the first steps, one each; the last one is the goal itself."""
+    if via == "jump":
+        return [given.goal]
+    first = []
+    start = _means(given.goal, V, given.Q)
+    if via in STARTS:
+        middle = goals.goal(**STARTS[via])
+        first = goals.towards(middle, _means(middle, V, given.Q), stride)
+        on_way = {"theta": np.pi / 2, "theta0": np.pi / 2}
+        known = dict(zip(("theta", "theta0"), start, strict=False))
+        if given.goal.kind == "angles":
+            start = tuple((known | {k: on_way[k] for k in STARTS[via]}).values())
+    return first + goals.towards(given.goal, start, stride)
+
+
+def _means(goal, V, Q):
+    theta, theta0 = measure.angles(V, Q)
+    lam, mu = measure.ratios(V, Q)
+    return goals.values_at(goal, theta.mean(), theta0.mean(), np.log(lam).mean(), np.log(mu).mean())
+
+
+def ratio(log, via, stride, shape_steps, quadratic, limit):
+    """Runs of the reduced formulation with smaller and smaller strides, until one succeeds.
+
+    Paper: Sec. 6.2 (gradually).
+    """
+    given = log.given
+    for factor in STRIDES[:1] if via == "jump" else STRIDES:
+        way = _way(given, given.V, via, stride * factor)
+        first = "shape" if shape_steps else "angle"
+        plan = [(first, goal) for goal in way] + [("shape", given.goal)] * (shape_steps - 1)
+        _run(log, plan + [("angle", given.goal)] * ANGLE_STEPS, quadratic, limit)
+        if log.done or len(log.history) > limit:
+            return
+
+
+def _run(log, plan, quadratic, limit):
+    """The planned steps from the start, until done or WORSE angle steps gained nothing."""
+    given, V, before, s = log.given, log.given.V, None, None
+    lowest, worse = np.inf, 0
+    for kind, goal in plan:
+        if len(log.history) > limit:
+            return
+        if goal is not before:
+            before, s = goal, freedom(given, V, goal)
+        take = steps.shape_step if kind == "shape" else steps.angle_step
+        d, ds = take(given, V, goal, s, log.seconds, quadratic)
+        part = next((t for t in PARTS if goals.is_possible(goal, s + t * ds)), 0.0)
+        V, s = V + part * d, s + part * ds
+        final = s if goal is given.goal else freedom(given, V)
+        size = np.linalg.norm(d, axis=1).max()
+        step = log.record(kind, goal, V, final, size)
+        if step is None or log.done:
+            return
+        if kind == "angle" and goal is given.goal:
+            worse = 0 if step.deviation < 0.9 * lowest else worse + 1
+            lowest = min(lowest, step.deviation)
+            if worse == WORSE:
+                return
+
+
+def paper(log, via, stride, iterations, solve=None):
+    """Guided projection: a fixed number of steps, the last two without shape energies.
+
+    solve: a function (A, b) for the linear systems, see `guided.step`.
+
+    Paper: Sec. 6.3 (guided projection), Table 1.
+    """
+    given = log.given
+    way = _way(given, given.V, via, stride)
+    diagonal = np.linalg.norm(np.ptp(given.V, axis=0))
+    V, lay = given.V, None
+    for k in range(iterations):
+        goal = way[k] if k < min(len(way), iterations - 2) else given.goal
+        mode = guided.is_theta_mode(goal)
+        if lay is None or mode != lay.theta_mode:
+            lay = guided.layout(given.Q, len(V), mode)
+            x = guided.start(lay, V / diagonal, given.Q)
+        d = guided.step(given, lay, goal, x, diagonal, log.seconds, k < iterations - 2, solve)
+        x = x + d
+        if not np.isfinite(x).all():
+            return
+        moved = diagonal * d[: V.size].reshape(-1, 3)
+        V, size = V + moved, np.linalg.norm(moved, axis=1).max()
+        residual = np.sum(guided.hard(lay, goal, x)[0] ** 2)
+        s = goals.freedom(given.goal, guided.logs(lay, x))
+        if log.record("guided", goal, V, s, size, residual) is None or log.stopped:
+            return

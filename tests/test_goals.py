@@ -1,0 +1,98 @@
+"""Goals against the definition of the ratios, and what they refuse."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inetlib import goals, parallelogram
+
+ANGLE = st.floats(0.2, 2.9)
+LOG = st.floats(-0.8, 0.8)
+
+
+@given(ANGLE, LOG)
+def test_one_given_angle_is_kept_whatever_the_freedom(theta, s):
+    for kind in ("theta", "theta0"):
+        lam, mu = np.exp(goals.logs(goals.goal(**{kind: theta}), [s])[0])
+        found = dict(zip(("theta", "theta0"), parallelogram.angles(lam, mu), strict=True))
+        assert abs(found[kind] - theta) < 1e-9
+
+
+@given(ANGLE, LOG)
+def test_slopes_are_differences(theta, s):
+    h = 1e-5
+    some = goals.goal(), goals.goal(equal=True), goals.goal(lam=1.2), goals.goal(mu=0.7)
+    for goal in (goals.goal(theta=theta), goals.goal(theta0=theta), *some):
+        k = 2 if goal.kind == "free" else 1
+        point = np.array([s, 0.1])[:k]
+        _, slopes = goals.logs(goal, point)
+        for j, e in enumerate(h * np.eye(k)):
+            up, down = (goals.logs(goal, point + sign * e)[0] for sign in (1, -1))
+            np.testing.assert_allclose(slopes[:, j], (up - down) / (2 * h), atol=1e-8)
+
+
+@given(ANGLE, ANGLE)
+def test_two_given_angles_are_lemma_1_and_have_no_freedom(theta, theta0):
+    goal = goals.goal(theta, theta0)
+    found, slopes = goals.logs(goal, [])
+    np.testing.assert_allclose(parallelogram.angles(*np.exp(found)), (theta, theta0), atol=1e-9)
+    assert slopes.shape == (2, 0)
+
+
+def test_pairs_of_an_angle_and_a_ratio():
+    lam, mu = parallelogram.ratios(1.1, 0.8)
+    for kwargs in ({"lam": lam, "theta": 1.1}, {"mu": mu, "theta0": 0.8}, {"lam": lam, "mu": mu}):
+        np.testing.assert_allclose(goals.goal(**kwargs).values, (1.1, 0.8), atol=1e-12)
+    assert goals.goal(equal=True, theta=1.0) == goals.goal(1.0, 1.0)
+    np.testing.assert_allclose(
+        goals.goal(equal=True, lam=(1 + np.sqrt(5)) / 2).values, np.pi / 3, atol=1e-12
+    )
+
+
+def test_freedom_finds_the_nearest_point_of_the_goal():
+    assert goals.freedom(goals.goal(1.0, 1.0), (0.1, 0.3)).size == 0
+    np.testing.assert_allclose(goals.freedom(goals.goal(equal=True), (0.1, 0.3)), [0.2])
+    np.testing.assert_allclose(goals.freedom(goals.goal(theta=1.0), (0.1, 0.3)), [0.1])
+    np.testing.assert_allclose(goals.freedom(goals.goal(lam=2.0), (0.1, 0.3)), [0.3])
+    np.testing.assert_allclose(goals.freedom(goals.goal(), (0.1, 0.3)), [0.1, 0.3])
+
+
+def test_freedom_starts_inside_the_range_of_eq_4():
+    for wanted in ({}, {"equal": True}, {"lam": 3.0}, {"mu": 0.3}):
+        for near in ((2.0, 1.5), (-3.0, 2.0), (0.5, -4.0)):
+            goal = goals.goal(**wanted)
+            s = goals.freedom(goal, near)
+            assert goals.is_possible(goal, s)
+    assert not goals.is_possible(goals.goal(), (2.0, 2.0))
+
+
+def test_the_way_has_small_strides_and_ends_at_the_goal():
+    goal = goals.goal(1.0, 2.0)
+    way = goals.towards(goal, (1.5, 1.5), 0.2)
+    values = np.array([(1.5, 1.5), *(g.values for g in way)])
+    assert way[-1] is goal
+    assert np.abs(np.diff(values, axis=0)).max() <= 0.2 + 1e-12
+    assert len(way) == 3
+    assert goals.towards(goals.goal(), (), 0.2) == [goals.goal()]
+
+
+@pytest.mark.parametrize(
+    ("kwargs", "words"),
+    [
+        ({"theta": 0.0}, "between 0 and pi"),
+        ({"theta0": np.pi}, "between 0 and pi"),
+        ({"theta": np.nan}, "between 0 and pi"),
+        ({"theta": 60}, "theta = 60"),
+        ({"lam": 0.0}, "positive"),
+        ({"mu": np.inf}, "positive"),
+        ({"lam": 5.0, "mu": 3.0}, "Eq. 4"),
+        ({"lam": 1.5, "theta0": 1.0}, "two nets"),
+        ({"mu": 1.5, "theta": 1.0}, "two nets"),
+        ({"theta": 1.0, "theta0": 1.0, "mu": 1.0}, "drop"),
+        ({"theta": 1.0, "theta0": 1.1, "equal": True}, "equal=True"),
+    ],
+)
+def test_refused(kwargs, words):
+    with pytest.raises(ValueError, match=words):
+        goals.goal(**kwargs)

@@ -1,0 +1,100 @@
+"""The paper's formulation: counts, its own residual, and what its residual does not say."""
+
+import numpy as np
+import pytest
+
+from inetlib import conformal, goals, guided, measure, mesh, parallelogram, solver
+
+RIGHT, SIXTY = np.pi / 2, np.pi / 3
+
+
+def count(Q, **wanted):
+    return guided.size(Q, Q.max() + 1, goals.goal(**wanted))
+
+
+def test_variables_and_constraints_of_a_20_x_20_grid():
+    Q = mesh.grid_quads(20, 20)
+    V, F = 441, 400
+    assert count(Q) == (3 * V + 6 * F + 2, 8 * F) == (3725, 3200)
+    assert count(Q, theta=RIGHT) == (3 * V + 6 * F + 2, 9 * F)
+    assert count(Q, theta=SIXTY, theta0=RIGHT) == (3 * V + 6 * F + 2, 10 * F)
+    assert count(Q, lam=1.5) == (3 * V + 6 * F + 2, 8 * F + 1)
+    assert count(Q, equal=True) == (3 * V + 2 * F + 1, 4 * F)
+    assert count(Q, theta=SIXTY, theta0=SIXTY) == (3 * V + 2 * F + 1, 4 * F + 1) == (2124, 1601)
+
+
+def test_variables_of_the_hexagon_mesh_are_the_printed_ones():
+    """Printed: 2323 and 4052 variables, 1730 and 4321 constraints, one row of zeros in each."""
+    _, Q, _ = mesh.polygon_rings(6, 8)
+    assert count(Q, theta=SIXTY, theta0=SIXTY) == (2323, 1730 - 1)
+    assert count(Q, theta=SIXTY, theta0=np.pi / 4) == (4052, 4321 - 1)
+
+
+@pytest.mark.parametrize("angles", [(1.0, 1.2), (1.1, 1.1)])
+def test_the_start_is_a_solution_on_a_net_of_these_angles(angles):
+    z = conformal.sheared_grid(*angles, 4, 3, origin=1 + 1j, edge=0.3)
+    V, Q = conformal.quads(z**2)
+    goal = goals.goal(*angles)
+    lay = guided.layout(Q, len(V), guided.is_theta_mode(goal))
+    x = guided.start(lay, V, Q)
+    residual, H = guided.hard(lay, goal, x)
+    np.testing.assert_allclose(residual, 0, atol=1e-10)
+    assert H.shape == guided.size(Q, len(V), goal)[::-1]
+    lam, mu = parallelogram.ratios(*angles)
+    np.testing.assert_allclose(np.exp(guided.logs(lay, x)), (lam, mu), rtol=1e-10)
+
+
+def test_the_jacobian_of_all_equations_together():
+    V = np.random.default_rng(0).normal(size=(12, 3))
+    Q = mesh.grid_quads(3, 2)
+    for wanted in ({"theta": 1.0, "theta0": 1.2}, {"theta": 1.0, "theta0": 1.0}, {"mu": 1.3}):
+        goal = goals.goal(**wanted)
+        lay = guided.layout(Q, len(V), guided.is_theta_mode(goal))
+        x = guided.start(lay, V, Q) + 0.1
+        d = np.random.default_rng(1).normal(size=x.size)
+        _, H = guided.hard(lay, goal, x)
+        up, down = (guided.hard(lay, goal, x + s * 1e-4 * d)[0] for s in (1, -1))
+        # quadratic equations: central differences are exact up to rounding
+        np.testing.assert_allclose(H @ d, (up - down) / 2e-4, rtol=1e-8, atol=1e-7)
+
+
+def patch(n=8):
+    u, v = np.meshgrid(*2 * [np.linspace(-1, 1, n + 1)], indexing="ij")
+    z = 0.3 * np.cos(1.3 * u - 0.4) * np.cos(1.1 * v + 0.3) + 0.2 * u * v
+    return np.stack([u * (1 + 0.1 * v), v, z], axis=-1).reshape(-1, 3), mesh.grid_quads(n, n)
+
+
+def test_guided_projection_reaches_residuals_like_the_printed_ones():
+    V, Q = patch()
+    found = solver.optimize(V, Q, formulation="paper")
+    assert len(found.history) - 1 == 17
+    residuals = [step.residual for step in found.history[1:]]
+    assert residuals[-1] < 1e-11 and residuals[-1] < 1e-3 * residuals[0]
+    lam, mu = measure.ratios(found.V, Q)
+    np.testing.assert_allclose(lam, found.lam, atol=1e-2)
+    np.testing.assert_allclose(mu, found.mu, atol=1e-2)
+
+
+def test_a_tiny_residual_is_no_certificate_of_the_angles():
+    V, Q = patch(16)
+    found = solver.optimize(V, Q, SIXTY, SIXTY, formulation="paper", via="jump")
+    last = found.history[-1]
+    assert last.residual < 1e-6 and np.degrees(last.deviation) > 0.1
+    assert not found.converged and "not converged" in found.message
+
+
+def test_the_step_does_not_depend_on_the_scale_of_the_mesh():
+    V, Q = patch(5)
+    one, big = (
+        solver.optimize(k * V, Q, theta=RIGHT, formulation="paper", iterations=4)
+        for k in (1, 1000.0)
+    )
+    np.testing.assert_allclose(big.V / 1000, one.V, atol=1e-9)
+
+
+def test_fixed_vertices_stay_in_both_formulations():
+    V, Q = patch(6)
+    for formulation in ("ratio", "paper"):
+        found = solver.optimize(V, Q, theta=RIGHT, formulation=formulation, fixed=[0, 6, 20])
+        np.testing.assert_array_equal(found.V[[0, 6, 20]], V[[0, 6, 20]])
+        assert np.abs(found.V - V).max() > 1e-3

@@ -1,0 +1,401 @@
+"""Optimised nets, judged by `measure` alone; symmetries of the solver; what it refuses."""
+
+import numpy as np
+import pytest
+from test_guided import patch
+
+import inetlib
+from inetlib import (
+    goals,
+    loxodrome,
+    measure,
+    mesh,
+    parallelogram,
+    problem,
+    reference,
+    solver,
+    steps,
+)
+
+RIGHT, SIXTY = np.pi / 2, np.pi / 3
+ONE_NANODEGREE = np.radians(1e-9)
+
+
+def judge(found, Q, theta, theta0):
+    """The judge's verdict on a net that should have these angles."""
+    off = [
+        measure.spread(a, t).max_deviation
+        for a, t in zip(measure.angles(found.V, Q), (theta, theta0), strict=True)
+    ]
+    quality = measure.quality(found.V, Q)
+    return max(off) < ONE_NANODEGREE and quality.flips == 0
+
+
+@pytest.mark.parametrize("residual", ["log", "quadratic"])
+@pytest.mark.parametrize("degrees", [(90, 90), (60, 60), (60, 45), (120, 70), (45, 45)])
+def test_every_face_has_the_two_given_angles(degrees, residual):
+    V, Q = patch()
+    angles = np.radians(degrees)
+    found = solver.optimize(V, Q, *angles, residual=residual)
+    assert found.converged and judge(found, Q, *angles)
+    assert len(found.history) - 1 <= 12
+    np.testing.assert_allclose((found.lam, found.mu), parallelogram.ratios(*angles))
+    np.testing.assert_array_equal(V, patch()[0])  # the input is untouched
+
+
+@pytest.mark.parametrize(
+    "wanted",
+    [{}, {"theta": RIGHT}, {"theta0": 1.2}, {"lam": 1.3}, {"mu": 0.8}, {"equal": True}],
+)
+@pytest.mark.parametrize("residual", ["log", "quadratic"])
+def test_what_is_not_given_is_found(wanted, residual):
+    V, Q = patch()
+    found = solver.optimize(V, Q, residual=residual, **wanted)
+    assert found.converged and judge(found, Q, found.theta, found.theta0)
+    for name, value in wanted.items():
+        if name == "equal":
+            assert abs(found.theta - found.theta0) < 1e-12
+        else:
+            assert abs(getattr(found, name) - value) < 1e-12
+    lam, mu = measure.ratios(found.V, Q)
+    np.testing.assert_allclose(lam, found.lam, rtol=1e-10)
+    np.testing.assert_allclose(mu, found.mu, rtol=1e-10)
+
+
+def test_a_net_that_has_its_angles_stays_where_it_is():
+    V, Q = patch()
+    once = solver.optimize(V, Q, 1.0, 1.2)
+    again = solver.optimize(once.V, Q, 1.0, 1.2, shape_steps=0)
+    assert np.abs(again.V - once.V).max() < 1e-12
+
+
+def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
+    V, Q = patch(5)
+    for wanted in ({"theta": 1.5, "theta0": 1.4}, {"theta": 1.5}, {}):
+        goal = goals.goal(**wanted)
+        given = problem.problem(V, Q, goal)
+        s = goals.freedom(goal, (0.0, 0.0))
+        d, ds = steps.angle_step(given, V, goal, s, {})
+        residual, J, slopes = steps.equations(given, V, goal, s)
+        np.testing.assert_allclose(J @ d.ravel() - slopes @ ds, -residual, atol=1e-10)
+        # the same by LAPACK: eliminate s by projecting on what the slopes cannot reach
+        keep = np.linalg.svd(slopes)[0][:, np.linalg.matrix_rank(slopes) :]
+        least = np.linalg.lstsq(keep.T @ J.toarray(), -keep.T @ residual, rcond=None)[0]
+        np.testing.assert_allclose(d.ravel(), least, atol=1e-10)
+
+
+def test_a_shape_step_minimises_the_linearised_energy():
+    V, Q = patch(4)
+    surface = reference.mesh(*patch(9))
+    goal = goals.goal(theta=1.4)
+    given = problem.problem(V, Q, goal, reference=surface)
+    s = np.array([0.1])
+    d, ds = steps.shape_step(given, V, goal, s, {})
+    residual, J, slopes = steps.equations(given, V, goal, s)
+    A, g = problem.shape(given, V)
+    close = np.repeat(given.weights.closeness, 3)
+
+    def energy(x):
+        d, ds = x[: V.size], x[V.size :]
+        f = given.edge * (residual + J @ d - slopes @ ds)
+        return f @ f + d @ (A @ d) + 2 * g @ d + close @ d**2
+
+    best = np.concatenate([d.ravel(), ds])
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        aside = 1e-3 * rng.normal(size=best.size)
+        assert energy(best + aside) > energy(best)
+
+
+def test_shape_energies_are_those_of_the_paper():
+    V, Q = patch(4)
+    surface = reference.mesh(*patch(9))
+    weights = problem.Weights(fairness=0.3, approximation=0.5, boundary=0.7)
+    given = problem.problem(V, Q, goals.goal(), weights, reference=surface)
+    W = V + 0.05 * np.random.default_rng(1).normal(size=V.shape)
+    grid = np.moveaxis(W.reshape(5, 5, 3), 2, 0)
+    rows = np.concatenate([np.diff(grid, 2, axis=1).ravel(), np.diff(grid, 2, axis=2).ravel()])
+    w = W.ravel()
+    np.testing.assert_allclose(w @ (given.fair @ w), 0.3 * rows @ rows, rtol=1e-12)
+    outer = given.boundary
+    assert len(outer) == 16
+    feet, normals = surface.closest(W)
+    p, e1, _, _ = surface.boundary(W[outer])
+    pull = 0.5 * np.sum((W - feet) * normals, axis=1)[:, None] * normals
+    aside = np.cross(e1, np.cross(W[outer] - p, e1))  # the paper's second form, times e1 again
+    pull[outer] += 0.7 * aside
+    A, g = problem.shape(given, W)
+    np.testing.assert_allclose(g - given.fair @ w, pull.ravel(), atol=1e-12)
+    hessian = 0.5 * normals[:, :, None] * normals[:, None, :]
+    hessian[outer] += 0.7 * (np.eye(3) - e1[:, :, None] * e1[:, None, :])
+    rest = (A - given.fair).toarray().reshape(25, 3, 25, 3)
+    np.testing.assert_allclose(rest[range(25), :, range(25)], hessian, atol=1e-12)
+
+
+# --- symmetries -------------------------------------------------------------------------
+
+
+def test_moved_turned_and_scaled_meshes_give_moved_turned_and_scaled_nets():
+    V, Q = patch(6)
+    turn = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    one = solver.optimize(V, Q, SIXTY, 1.3)
+    two = solver.optimize(7 * V @ turn.T + 3, Q, SIXTY, 1.3)
+    np.testing.assert_allclose((two.V - 3) @ turn / 7, one.V, atol=1e-10)
+
+
+def test_a_mirror_image_has_the_supplementary_angles():
+    V, Q = patch(6)
+    one = solver.optimize(V, Q, 1.2, 1.3)
+    two = solver.optimize(V * [1, 1, -1], np.roll(Q[:, ::-1], 1, axis=1), np.pi - 1.2, 1.3)
+    # v1 v2 v3 v4 -> v1 v4 v3 v2: d2 changes its sign, the medial lines change places
+    np.testing.assert_allclose(two.V * [1, 1, -1], one.V, atol=1e-10)
+
+
+def test_a_mesh_with_a_half_turn_keeps_it():
+    u, v = np.meshgrid(*2 * [np.linspace(-1, 1, 9)], indexing="ij")
+    V = np.stack([u + 0.2 * v, v, 0.4 * u * v + 0.3 * u**2], axis=-1).reshape(-1, 3)
+    weights = np.linspace(1, 2, len(V))
+    symmetric = problem.Weights(fairness=0.01 * (weights + weights[::-1]))
+    found = solver.optimize(V, mesh.grid_quads(8, 8), SIXTY, SIXTY, weights=symmetric)
+    np.testing.assert_allclose(found.V[::-1] * [-1, -1, 1], found.V, atol=1e-10)
+    assert found.converged
+
+
+def test_weights_that_are_not_symmetric_break_the_symmetry():
+    u, v = np.meshgrid(*2 * [np.linspace(-1, 1, 9)], indexing="ij")
+    V = np.stack([u + 0.2 * v, v, 0.4 * u * v + 0.3 * u**2], axis=-1).reshape(-1, 3)
+    skew = problem.Weights(fairness=np.linspace(0.01, 0.1, len(V)))
+    found = solver.optimize(V, mesh.grid_quads(8, 8), SIXTY, SIXTY, weights=skew)
+    assert np.abs(found.V[::-1] * [-1, -1, 1] - found.V).max() > 1e-3
+
+
+# --- what a designer fixes --------------------------------------------------------------
+
+
+def test_fixed_vertices_and_mobility():
+    V, Q = patch()
+    mask = np.zeros(len(V), dtype=bool)
+    mask[[0, 8, 72, 80]] = True
+    for fixed in (mask, [0, 8, 72, 80]):
+        found = solver.optimize(V, Q, theta=RIGHT, fixed=fixed)
+        assert found.converged
+        np.testing.assert_array_equal(found.V[mask], V[mask])
+    slow = np.where(V[:, 0] < 0, 0.01, 1.0)
+    lazy = solver.optimize(V, Q, RIGHT, RIGHT, mobility=slow)
+    free = solver.optimize(V, Q, RIGHT, RIGHT)
+    left = V[:, 0] < -0.5
+    way = [np.linalg.norm(r.V - V, axis=1)[left].mean() for r in (lazy, free)]
+    assert lazy.converged and way[0] < 0.7 * way[1]
+
+
+def test_a_fixed_boundary_stays_and_the_rest_is_judged_honestly():
+    V, Q = patch()
+    found = solver.optimize(V, Q, theta=RIGHT, fixed="boundary")
+    outer = np.unique(np.concatenate(mesh.boundary_loops(Q)))
+    np.testing.assert_array_equal(found.V[outer], V[outer])
+    assert np.isfinite(found.V).all()
+    off = np.abs(measure.angles(found.V, Q)[0] - RIGHT).max()
+    assert found.converged == (off < 1e-10)
+    assert ("not converged" in found.message) != found.converged
+
+
+def test_gliding_along_a_boundary_keeps_the_outline_closer():
+    V, Q = patch()
+    surface = reference.mesh(V, Q)
+    outer = np.unique(np.concatenate(mesh.boundary_loops(Q)))
+    apart = []
+    for weight in (0.0, 0.01):
+        weights = problem.Weights(boundary=weight)
+        found = solver.optimize(V, Q, RIGHT, reference=surface, weights=weights)
+        assert found.converged
+        feet = surface.boundary(found.V[outer])[0]
+        apart.append(np.linalg.norm(found.V[outer] - feet, axis=1).mean())
+    assert apart[1] < 0.5 * apart[0]
+
+
+def test_vertices_on_a_sphere_stay_on_it():
+    x, y = np.meshgrid(*2 * [np.linspace(-0.5, 0.5, 9)], indexing="ij")
+    V = np.stack([x, y, np.sqrt(1 - x**2 - y**2)], axis=-1).reshape(-1, 3)
+    Q = mesh.grid_quads(8, 8)
+    sphere = reference.parametric(
+        lambda u, v: np.stack([np.cos(v) * np.cos(u), np.sin(v), np.cos(v) * np.sin(u)], -1),
+        (0.2, 2.9),
+        (-1.4, 1.4),
+    )
+    found = solver.optimize(V, Q, 1.2, 1.3, reference=sphere, on_surface=True)
+    assert judge(found, Q, 1.2, 1.3)
+    np.testing.assert_allclose(np.linalg.norm(found.V, axis=1), 1, atol=1e-9)
+
+
+# --- the way to the angles --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("via", ["mean", "jump", "medials", "diagonals", "squares"])
+def test_every_way_leads_to_the_angles(via):
+    V, Q = patch()
+    found = solver.optimize(V, Q, 1.3, 1.2, via=via)
+    assert judge(found, Q, 1.3, 1.2)
+    kinds = [(s.goal.kind, s.goal.values) for s in found.history[1:]]
+    if via == "medials":
+        assert ("theta0", (RIGHT,)) in kinds
+    if via == "diagonals":
+        assert ("theta", (RIGHT,)) in kinds
+    if via == "squares":
+        assert ("angles", (RIGHT, RIGHT)) in kinds
+    if via == "jump":
+        assert all(values == (1.3, 1.2) for _, values in kinds)
+
+
+def test_the_hexagon_mesh_goes_to_60_and_45_degrees_step_by_step():
+    V, Q, polygon = mesh.polygon_rings(6, 4)
+    V[:, 2] = 0.02 * (V[:, :2] ** 2).sum(axis=1) * np.cos(3 * np.arctan2(V[:, 1], V[:, 0]))
+    found = solver.optimize(V, Q, SIXTY, np.pi / 4, polygons=[polygon])
+    assert judge(found, Q, SIXTY, np.pi / 4)
+    strides = [
+        abs(a.goal.values[1] - b.goal.values[1])
+        for a, b in zip(found.history[1:], found.history[2:], strict=False)
+    ]
+    assert max(strides) <= solver.STRIDE + 1e-12
+
+
+def test_random_patches_converge_or_say_that_they_did_not():
+    rng = np.random.default_rng(7)
+    good = 0
+    for _ in range(40):
+        m, n = rng.integers(8, 15, 2)
+        u, v = np.meshgrid(np.linspace(0, 1, m + 1), np.linspace(0, 1, n + 1), indexing="ij")
+        waves = [
+            rng.normal() * np.cos(rng.uniform(-6, 6) * u + rng.uniform(-6, 6) * v) for _ in "xyz"
+        ]
+        z = rng.uniform(0.05, 0.3) * sum(waves) / np.ptp(sum(waves))
+        angles = rng.uniform(*np.radians([30, 150]), 2)
+        Q = mesh.grid_quads(m, n)
+        found = solver.optimize(np.stack([u, v, z], -1).reshape(-1, 3), Q, *angles)
+        assert found.converged == judge(found, Q, *angles)
+        good += found.converged
+    assert good >= 39
+
+
+# --- when it cannot be done -------------------------------------------------------------
+
+
+def hopeless(**more):
+    """All vertices but one fixed: the angles cannot be met."""
+    V, Q = patch(4)
+    return V, solver.optimize(V, Q, SIXTY, SIXTY, fixed=np.arange(len(V)) != 12, **more)
+
+
+def test_a_hopeless_case_says_so_and_returns_the_best_net():
+    _, found = hopeless()
+    assert not found.converged and "not converged" in found.message
+    assert np.isfinite(found.V).all()
+    least = min((s.flips, s.deviation) for s in found.history)
+    off = [np.abs(a - SIXTY).max() for a in measure.angles(found.V, mesh.grid_quads(4, 4))]
+    assert least == (measure.quality(found.V, mesh.grid_quads(4, 4)).flips, pytest.approx(max(off)))
+
+
+def test_strict_raises_and_carries_the_best_net():
+    with pytest.raises(inetlib.NotConverged, match="not converged") as caught:
+        hopeless(strict=True)
+    assert caught.value.result.V.shape == (25, 3)
+
+
+def test_extreme_angles_never_give_nan():
+    V, Q = patch(5)
+    for degrees in ((1, 1), (179, 1), (5, 175), (179.9, 90)):
+        found = solver.optimize(V, Q, *np.radians(degrees))
+        assert np.isfinite(found.V).all()
+        assert found.converged == judge(found, Q, *np.radians(degrees))
+
+
+def test_a_net_far_from_the_origin_is_as_exact_as_its_coordinates():
+    V, Q = patch(5)
+    found = solver.optimize(V + 1e6, Q, SIXTY, SIXTY)
+    off = max(np.abs(a - SIXTY).max() for a in measure.angles(found.V, Q))
+    assert found.converged and 1e-11 < off < 1e-7
+
+
+def test_a_closed_torus_finds_angles_that_fit_it_and_refuses_others():
+    net = loxodrome.torus_web(2.0, 0.8, m=24, n=12, shift=6)
+    V = net.V + 0.01 * np.random.default_rng(0).normal(size=net.V.shape)
+    found = solver.optimize(V, net.Q)
+    assert found.converged and judge(found, net.Q, found.theta, found.theta0)
+    other = solver.optimize(V, net.Q, equal=True)
+    assert not other.converged and np.isfinite(other.V).all()
+
+
+def test_a_caller_can_watch_stop_and_limit():
+    V, Q = patch()
+    seen = []
+    stopped = solver.optimize(
+        V, Q, SIXTY, SIXTY, callback=lambda step, W: seen.append(W) or len(seen) < 3
+    )
+    assert len(seen) == len(stopped.history) - 1 == 3 and "stopped by the caller" in stopped.message
+    limited = solver.optimize(V, Q, SIXTY, SIXTY, iterations=2)
+    assert len(limited.history) == 3 and not limited.converged
+    for found in (stopped, limited):
+        assert measure.quality(found.V, Q).flips == 0
+
+
+def test_the_bar_shows_on_request_only(capsys):
+    V, Q = patch(4)
+    solver.optimize(V, Q, RIGHT)
+    assert capsys.readouterr().err == ""
+    solver.optimize(V, Q, RIGHT, progress=True)
+    assert "step" in capsys.readouterr().err
+
+
+# --- bad input --------------------------------------------------------------------------
+
+
+def far_away():
+    V, Q = patch(4)
+    return reference.mesh(V + 10, Q)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"Q": [[0, 1, 2, 3], [0, 1, 2, 3, 4]]}, "polygons="),
+        ({"Q": mesh.grid_quads(4, 4)[:, :3]}, "triangles"),
+        (
+            {
+                "Q": np.concatenate(
+                    [mesh.grid_quads(4, 4)[:1], np.roll(mesh.grid_quads(4, 4)[1:], 1, 1)]
+                )
+            },
+            "label",
+        ),
+        ({"V": np.full((25, 3), np.nan)}, "not a finite"),
+        ({"V": np.zeros((25, 3))}, "length zero|no area"),
+        ({"theta": 0.0}, "theta"),
+        ({"theta": np.pi}, "theta"),
+        ({"theta0": np.nan}, "theta0"),
+        ({"weights": problem.Weights(fairness=-1.0)}, "fairness = -1"),
+        ({"weights": problem.Weights(closeness=np.nan)}, "closeness"),
+        ({"weights": problem.Weights(boundary=np.ones(3))}, "boundary has the shape"),
+        ({"reference": far_away}, "far away"),
+        ({"on_surface": True}, "needs a reference"),
+        ({"formulation": "magic"}, "ratio, paper"),
+        ({"residual": "cubic"}, "log, quadratic"),
+        ({"via": "moon"}, "squares"),
+        ({"stride": 0.0}, "positive"),
+        ({"tolerance": -1.0}, "positive"),
+        ({"iterations": 1.5}, "whole number"),
+        ({"shape_steps": -1}, "whole number"),
+        ({"fixed": [99]}, "0 to 24"),
+        ({"fixed": "corner"}, "boundary"),
+        ({"fixed": np.ones(3, dtype=bool)}, "25 entries"),
+        ({"fixed": np.ones(25, dtype=bool)}, "no vertex is free"),
+        ({"mobility": -np.ones(25)}, "mobility"),
+        ({"polygons": [[0, 1, 2]]}, "not a hole"),
+    ],
+)
+def test_bad_input_is_refused_before_any_work(change, words):
+    V, Q = patch(4)
+    if "reference" in change:
+        change = {"reference": change["reference"]()}
+    kwargs = {"V": V, "Q": Q, "theta": 1.2, "theta0": 1.3} | change
+    with pytest.raises(ValueError, match=words):
+        solver.optimize(callback=lambda *_: pytest.fail("work was done"), **kwargs)
