@@ -3,22 +3,14 @@
 Paper: Sec. 6.3 (linear systems).
 """
 
-from contextlib import nullcontext
-from functools import partial
-
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
+from threadpoolctl import ThreadpoolController
 
-try:
-    from threadpoolctl import ThreadpoolController
-except ImportError:
-    NARROW = 64  # up to this bandwidth LAPACK takes no blocks, and so starts no threads
-    _one_thread = nullcontext
-else:
-    NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
-    _one_thread = partial(ThreadpoolController().limit, limits=1, user_api="blas")
+BLAS = ThreadpoolController()
+NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
 MANY = 5000  # from here on nested dissection beats minimum degree
 LEAF = 16  # points that need no further division
 
@@ -42,6 +34,15 @@ def coordinates(vertices):
     """
     vertices = np.asarray(vertices)
     return (3 * vertices[..., None] + np.arange(3)).reshape(len(vertices), -1)
+
+
+def scaled(A, columns):
+    """A with its columns multiplied by numbers, (columns,) or one; CSR.
+
+    Paper: Sec. 6.3 (linear systems).
+    """
+    data = A.data * (columns[A.indices] if np.ndim(columns) else columns)
+    return csr_array((data, A.indices, A.indptr), shape=A.shape)
 
 
 def factor(A, order=None):
@@ -105,7 +106,7 @@ def _banded(A):
     band = np.zeros((width + 1, count), order="F")
     band[below[low], A.indices[low]] = A.data[low]
     try:
-        with _one_thread():  # more of them wait for one another on such small blocks
+        with BLAS.limit(limits=1, user_api="blas"):  # on small blocks more threads only wait
             factors = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
     except LinAlgError:
         return None

@@ -128,6 +128,46 @@ def _require_lengths(d1, d2, m13, m24):
         _length(medial, "a medial line")
 
 
+class Star(NamedTuple):
+    """Angles at vertices, radians: `vertex` (k,) numbers, theta and theta0 (k,) in (0, pi)."""
+
+    vertex: np.ndarray
+    theta: np.ndarray
+    theta0: np.ndarray
+
+
+def star_angles(V, Q, unit=False):
+    """The angles at which the four polylines of the web cross at the vertices, as `Star`.
+
+    Q labelled.  For interior vertices of valence 4, in increasing order: theta0 is the angle
+    between (right - left) and (up - down), theta that between the same chords of the two
+    diagonals, from the face corners opposite to the vertex.  unit=True takes chords of the
+    unit vectors from the vertex to its neighbours instead.
+
+    Paper: Thm 12 (angles at vertices).
+    """
+    V, Q = mesh.check_arrays(V, Q)
+    if not mesh.is_labelled(Q):
+        raise ValueError("the faces do not agree on u and v: call mesh.label first")
+    fan = mesh.fans(Q).get(4, np.empty((0, 4), dtype=np.int64))
+    first = np.argmax(fan % 2 == 1, axis=1)  # a u-edge leaves v2 or v4: along u or against it
+    fan = np.take_along_axis(fan, (first[:, None] + np.arange(4)) % 4, axis=1)
+    face, slot = np.divmod(fan, 4)
+    vertex = Q.ravel()[fan[:, 0]]
+    right, up = _chords(V, vertex, Q[face, (slot + 1) % 4], unit)
+    d2, d1 = _chords(V, vertex, Q[face, (slot + 2) % 4], unit)
+    order = np.argsort(vertex)
+    return Star(vertex[order], _angle(-d1, d2)[order], _angle(right, up)[order])
+
+
+def _chords(V, vertex, around, unit):
+    """Neighbour 0 minus neighbour 2, and 1 minus 3; around: (k, 4) vertex numbers."""
+    rays = V[around] - V[vertex][:, None]
+    if unit:
+        rays = rays / np.linalg.norm(rays, axis=2, keepdims=True)
+    return rays[:, 0] - rays[:, 2], rays[:, 1] - rays[:, 3]
+
+
 def theta_defect(V, Q):
     """How far each face is from a theta-quad: (d2^2 - d1^2 - 2 d1 . d2) / (d1^2 + d2^2).
 

@@ -34,7 +34,10 @@ PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.0
 
 
 class Problem(NamedTuple):
-    """A checked problem; arrays as in `problem`, `edge` the mean length of an edge."""
+    """A checked problem; arrays as in `problem`, `edge` the mean length of an edge.
+
+    The factors solve the linear systems of the two kinds of steps (see `steps`).
+    """
 
     V: np.ndarray
     Q: np.ndarray
@@ -47,6 +50,8 @@ class Problem(NamedTuple):
     fair: csr_array
     neighbours: np.ndarray
     edge: float
+    shape_factor: linear.Factor
+    angle_factor: linear.Factor
 
 
 def problem(
@@ -96,6 +101,8 @@ def problem(
         fair,
         neighbours,
         float(edge),
+        linear.Factor(V),
+        linear.Factor(V[Q].mean(axis=1)),
     )
 
 

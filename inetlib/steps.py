@@ -61,17 +61,18 @@ def shape_step(problem, V, goal, s, seconds, quadratic=False):
     """
     with timed(seconds, "assemble"):
         residual, J, slopes = equations(problem, V, goal, s, quadratic)
-        J = J * problem.edge
         f, G = residual * problem.edge, slopes * problem.edge
-        A, g = shape(problem, V)
         root = np.repeat(np.sqrt(problem.mobility), 3)
-        moving = diags_array(root)
-        J = J @ moving
-        A = moving @ A @ moving + J.T @ J
-        A = A + diags_array(np.repeat(problem.weights.closeness, 3) + REGULAR * A.diagonal().mean())
+        J = linear.scaled(J, problem.edge * root)
+        A, g = shape(problem, V)
+        if (root != 1).any():
+            A = linear.scaled(linear.scaled(A, root).T.tocsr(), root)
+        A = A + J.T @ J
+        diagonal = A.diagonal() + np.repeat(problem.weights.closeness, 3)
+        A.setdiag(diagonal + REGULAR * diagonal.mean())
         right = np.column_stack([root * g + J.T @ f, J.T @ G])
     with timed(seconds, "factor"):
-        solve = linear.factor(A)
+        solve = problem.shape_factor(A)
     with timed(seconds, "solve"):
         y = solve(right)
         ds = _freedom(
@@ -97,30 +98,34 @@ def angle_step(problem, V, goal, s, seconds, quadratic=False):
     """
     with timed(seconds, "assemble"):
         residual, J, slopes = equations(problem, V, goal, s, quadratic)
-        M, lift = _metric(problem, V)
+        free, root, lift = _metric(problem, V)
         f = residual + J @ lift
-        MJ = M @ J.T
-        S = J @ MJ
-        S = S + diags_array(np.full(S.shape[0], REGULAR * S.diagonal().mean()))
+        J = free(J)
+        S = J @ J.T
+        diagonal = S.diagonal()
+        S.setdiag(diagonal + REGULAR * diagonal.mean())
         right = np.column_stack([f, slopes])
     with timed(seconds, "factor"):
-        solve = linear.factor(S)
+        solve = problem.angle_factor(S)
     with timed(seconds, "solve"):
         y = solve(right)
         ds = _freedom(slopes.T @ y[:, 1:], slopes.T @ y[:, 0])
-        d = lift - MJ @ (y[:, 0] - y[:, 1:] @ ds)
+        d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
     return d.reshape(-1, 3), ds
 
 
 def _metric(problem, V):
-    """(M, lift): how freely the coordinates move, and the way onto the surface."""
-    mobility = np.repeat(problem.mobility, 3)
+    """(free, root, lift): J -> J R, the matrix R, and the way onto the surface.
+
+    R R^T tells how freely the coordinates move: by the mobility, on a surface along it.
+    """
+    root = np.sqrt(problem.mobility)
     if not problem.on_surface:
-        return diags_array(mobility), np.zeros(V.size)
+        root = np.repeat(root, 3)
+        return lambda J: linear.scaled(J, root), diags_array(root), np.zeros(V.size)
     feet, normals = problem.reference.closest(V)
-    tangential = np.eye(3) - normals[:, :, None] * normals[:, None, :]
-    blocks = tangential * problem.mobility[:, None, None]
+    blocks = (np.eye(3) - normals[:, :, None] * normals[:, None, :]) * root[:, None, None]
     count = len(V)
-    M = bsr_array((blocks, np.arange(count), np.arange(count + 1)), shape=(V.size, V.size))
-    lift = np.where(problem.mobility[:, None] > 0, feet - V, 0.0)
-    return M.tocsr(), lift.ravel()
+    R = bsr_array((blocks, np.arange(count), np.arange(count + 1)), shape=(V.size, V.size)).tocsr()
+    lift = np.where(root[:, None] > 0, feet - V, 0.0).ravel()
+    return lambda J: J @ R, R, lift

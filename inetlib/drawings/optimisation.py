@@ -9,6 +9,7 @@ from ..problem import Weights
 from . import _optimised
 
 CAMERA = -62, 42
+FLOOR = 1e-12  # below is rounding
 LITTLE = Weights(fairness=0.002, closeness=0.001, approximation=0, boundary=0)
 ENERGIES = {  # one energy after the other made strong, all with the same angles
     "angles only": None,
@@ -71,8 +72,8 @@ def convergence(results):
         steps = np.arange(len(history))
         shape = np.array([s.kind == "shape" for s in history])
         values = {
-            "residual": np.array([s.residual for s in history]),
-            "angles": np.degrees([s.deviation for s in history]),
+            "residual": np.maximum([s.residual for s in history], FLOOR**2),
+            "angles": np.maximum(np.degrees([s.deviation for s in history]), FLOOR),
         }
         for key, y in values.items():
             (line,) = axes[key].semilogy(steps, y, label=name, lw=1.3)

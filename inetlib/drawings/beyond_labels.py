@@ -1,0 +1,146 @@
+"""Which meshes can carry an isogonal net: a gallery, labelled or refused, and two nets in space.
+
+Paper: Sec. 4.1 (labels; beyond the paper: B9).
+"""
+
+import numpy as np
+
+from .. import mesh, plot, publish, reference, singular, solver
+from . import _optimised
+
+FACE = "#7b2d8b"  # the singular face
+SEAM = "#d0006f"
+ROWS = [[f"{letter}{k}" for k in range(6)] for letter in "ABC"]
+MOSAIC = [*ROWS, *[["D"] * 3 + ["E"] * 3] * 2]
+
+
+def gallery():
+    """The small meshes, {panel: (words, V, Q, polygon or None)}, not yet labelled.
+
+    A: polygons of 3 to 8 sides with corners of valence 4; B: vertices of valence 3 to 8; C:
+    polar caps of 3, 5 and 7 sides, closed strips with 3 and 4 turns, a Moebius strip.
+
+    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    """
+    found = {}
+    for k in range(6):
+        found[f"A{k}"] = (f"{k + 3}-gon", *mesh.polygon_rings(k + 3, 2))
+        found[f"B{k}"] = (f"valence {k + 3}", *singular.vertex(k + 3, 3), None)
+    for k, sides in enumerate((3, 5, 7)):
+        found[f"C{k}"] = (f"cap, {sides} sides", *singular.polar_cap(sides, 3))
+    for k, turns in ((3, 3), (4, 4)):
+        found[f"C{k}"] = (f"{turns} turns", *mesh.polygon_rings(turns, 1)[:2], None)
+    found["C5"] = ("Moebius strip", *singular.moebius_strip(26, 2), None)
+    return found
+
+
+def verdict(Q):
+    """ "labelled", or the first words of the reason why `mesh.label` refuses the faces.
+
+    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    """
+    try:
+        mesh.label(Q)
+    except ValueError as error:
+        words = str(error).removeprefix("no consistent u/v labelling: ")
+        if "odd sum" in words:
+            return f"odd sum of\n(valence - 1): {words.split()[-1]}"
+        return words.replace(" has the ", " has\nthe ").replace("the mesh is ", "").split(":")[0]
+    return "labelled"
+
+
+def nets(theta=np.radians(60), theta0=np.radians(45), dome=0.5):
+    """Two nets in space: {"D": (V, Q, polygon, `solver.Result`), "E"}; V is the start.
+
+    D: an octagon with corners of valence 4 in six rings; E: a polar cap of 20 sides.  Both
+    start from domes.  theta, theta0: radians.
+
+    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    """
+    meshes = {"D": mesh.polygon_rings(8, 6), "E": singular.polar_cap(20, 7)}
+    found = {}
+    for letter, (V, Q, polygon) in meshes.items():
+        V = _domed(V, dome, 0.1 if letter == "D" else 0.0)
+        near = reference.mesh(V, Q)
+        result = solver.optimize(V, Q, theta, theta0, reference=near, polygons=[polygon])
+        found[letter] = V, Q, polygon, result
+    return found
+
+
+def _domed(V, dome, wave):
+    """The plane mesh on a dome of four waves, its bounding box of diagonal 1."""
+    z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
+    r, waves = np.abs(z), np.real((z / np.abs(z)) ** 4)
+    V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * waves], axis=1)
+    return V / np.linalg.norm(np.ptp(V, axis=0))
+
+
+def draw(theta=np.radians(60), theta0=np.radians(45), azimuth=-70, elevation=48):
+    """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
+
+    theta, theta0: radians, of the nets; azimuth, elevation: the camera, degrees.  Edges have
+    the colours of u and v; where a mesh is refused, the names spread from one face until they
+    meet in disagreement along the dotted edges.  Returns a `publish.Drawing`.
+
+    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    """
+    figure, axes = plot.canvas(MOSAIC, 7.4, 7.2)
+    meshes, words = gallery(), {}
+    for name, (title, V, Q, polygon) in meshes.items():
+        words[name] = verdict(Q)
+        _small(axes[name], V, Q, polygon)
+        _title(axes[name], name, title, words[name])
+    found = nets(theta, theta0)
+    view = plot.camera(*np.radians([azimuth, elevation]))
+    texts = {"D": "around an octagon", "E": "on a polar cap"}
+    for letter, (_, Q, polygon, result) in found.items():
+        corners = result.V[polygon]
+        _optimised.surface(axes[letter], view, result.V, Q, polygons=[(corners, FACE)])
+        angles = rf"$\theta={np.degrees(theta):.4g}\degree,\ \theta_0={np.degrees(theta0):.4g}\degree$"
+        plot.panel(axes[letter], letter, f"{texts[letter]}: {angles}")
+    claims = {f"{name} {meshes[name][0]}": text.replace("\n", " ") for name, text in words.items()}
+    numbers = {}
+    for letter, (_, Q, _, result) in found.items():
+        numbers |= _optimised.claims({letter: result}, Q)
+    return publish.Drawing(
+        "beyond_labels",
+        figure,
+        "inetlib.drawings.beyond_labels.draw",
+        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
+        {k: np.round(r.V, _optimised.DIGITS) for k, (_, _, _, r) in found.items()},
+        [(r.V, Q, r.theta, r.theta0) for _, Q, _, r in found.values()],
+        claims | numbers,
+    )
+
+
+def _small(ax, V, Q, polygon):
+    """A mesh with its edges in the colours of the families, and where these disagree."""
+    labelled, bad = singular.seam(Q)
+    flat = np.ptp(V[:, 2]) == 0
+    points = plot.plane(V) if flat else plot.camera(*np.radians([-75, 32]))(V)[0]
+    if flat:
+        plot.polygons(ax, points, Q, "#f0f2f5")
+    if polygon is not None:
+        plot.polygons(ax, points, polygon[None], FACE)
+    v1, v2, v3, v4 = labelled.T
+    edges = {
+        "u": np.concatenate([np.stack([v2, v3], 1), np.stack([v1, v4], 1)]),
+        "v": np.concatenate([np.stack([v2, v1], 1), np.stack([v3, v4], 1)]),
+    }
+    if flat:
+        for family, pairs in edges.items():
+            plot.curves(ax, points[pairs], plot.COLOURS[family], 1.0)
+    else:
+        lines = [(V[pair], plot.COLOURS[k], 0.9) for k in "uv" for pair in edges[k]]
+        view = plot.camera(*np.radians([-75, 32]))
+        plot.scene(ax, view, V, Q, "#e3e7ee", lines, lift=0.01)
+    if len(bad):
+        plot.curves(ax, points[bad], "white", 3.4, zorder=5)
+        plot.curves(ax, points[bad], SEAM, 2.6, (0, (0.6, 0.9)), zorder=6)
+
+
+def _title(ax, name, title, words):
+    letter = name[0] if name[1] == "0" else ""
+    ax.set_title((rf"$\mathbf{{{letter}}}$  " if letter else "") + title, loc="left", fontsize=9)
+    colour = plot.INK if words == "labelled" else SEAM
+    ax.text(0.5, -0.03, words, transform=ax.transAxes, ha="center", va="top", size=7.5, color=colour)

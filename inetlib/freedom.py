@@ -1,0 +1,61 @@
+"""How many numbers of an isogonal net may still be chosen: the rank of its equations.
+
+Two equations a face, three coordinates a vertex: 3 V - 2 F degrees of freedom wherever the
+equations are independent at first order.
+
+Paper: Sec. 6.1 (beyond the paper: B8).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from . import constraints, linear, mesh
+
+LARGEST = 1200  # faces, of a dense singular value decomposition
+
+
+class Freedom(NamedTuple):
+    """unknowns: free coordinates; equations: 2 a face; rank: how many are independent;
+    free: unknowns - rank, the dimension of the linearised nets; gap: smallest counted
+    singular value over the largest.
+    """
+
+    unknowns: int
+    equations: int
+    rank: int
+    free: int
+    gap: float
+
+
+def jacobian(V, Q):
+    """The derivative of (log lam, log mu) of all faces by all coordinates: (2 f, 3 n), sparse.
+
+    V: (n, 3), Q: (f, 4), labelled.  Row 2 k belongs to lam of face k, row 2 k + 1 to mu;
+    column 3 i + c to the coordinate c of vertex i.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    V, Q = mesh.check_arrays(V, Q)
+    _, blocks = constraints.log_ratios(V[Q].reshape(-1, 12))
+    return linear.rows(blocks, linear.coordinates(Q), V.size)
+
+
+def count(V, Q, fixed=(), tolerance=1e-9):
+    """The `Freedom` of the net (V, Q) when the vertices `fixed` (numbers or mask) stay.
+
+    A singular value below `tolerance` of the largest counts as 0.  ValueError for meshes of
+    more than 1200 faces: the decomposition is dense.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    if len(Q) > LARGEST:
+        raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")
+    J = jacobian(V, Q).toarray()
+    stay = np.zeros(len(V), dtype=bool)
+    stay[np.asarray(fixed, dtype=bool if np.asarray(fixed).dtype == bool else int)] = True
+    J = J[:, ~np.repeat(stay, 3)]
+    values = np.linalg.svd(J, compute_uv=False)
+    rank = int(np.sum(values > tolerance * values[0]))
+    gap = float(values[rank - 1] / values[0])
+    return Freedom(J.shape[1], J.shape[0], rank, J.shape[1] - rank, gap)
