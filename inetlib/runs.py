@@ -59,14 +59,18 @@ class Log:
         self.best = None
         self.stopped = False
         self.bar = tqdm(disable=not progress, unit=" steps", desc="start")
-        self.record("start", given.goal, given.V, freedom(given, given.V), 0.0)
+        self.record("start", given.goal, given.V, None, 0.0)
 
     def record(self, kind, goal, V, s, size, residual=None):
-        """Judge the net V, remember it if it is the best; the `Step`, None if V is no net."""
+        """Judge the net V, remember it if it is the best; the `Step`, None if V is no net.
+
+        s: the freedom, that of the mean ratios if None; residual: that of the logarithms if None.
+        """
         with steps.timed(self.seconds, "check"):
-            step = self._judge(kind, goal, V, s, size, residual)
-        if step is None:
-            return None
+            try:
+                step, s = self._judge(kind, goal, V, s, size, residual)
+            except ValueError:  # a face has collapsed, V is not finite, ratios outside Eq. (4)
+                return None
         self.history.append(step)
         key = step.flips, step.deviation
         if self.best is None or key < self.best[0]:
@@ -78,21 +82,17 @@ class Log:
         return step
 
     def _judge(self, kind, goal, V, s, size, residual):
-        if not np.isfinite(V).all():
-            return None
-        try:
-            theta, theta0 = measure.angles(V, self.given.Q)
-            flips = len(measure.flipped(V, self.given.Q, self.given.neighbours))
-            logs = goals.logs(self.given.goal, s)[0]
-            wanted = exact_angles(*np.exp(logs))
-        except ValueError:  # a face has collapsed, or free ratios have left the range of Eq. (4)
-            return None
+        theta, theta0 = measure.angles(V, self.given.Q)
+        flips = len(measure.flipped(V, self.given.Q, self.given.neighbours))
+        s = freedom(self.given, V) if s is None else s
+        logs = goals.logs(self.given.goal, s)[0]
+        wanted = exact_angles(*np.exp(logs))
         if residual is None:
             found = np.log(np.stack(measure.ratios(V, self.given.Q), axis=1))
             residual = np.sum((found - logs) ** 2)
         off = [np.abs(a - b) for a, b in zip((theta, theta0), wanted, strict=True)]
         spread = [float(f(x)) for x in off for f in (np.max, np.mean)]
-        return Step(kind, goal, float(residual), *spread, float(size), flips)
+        return Step(kind, goal, float(residual), *spread, float(size), flips), s
 
     @property
     def done(self):
@@ -169,7 +169,7 @@ def _run(log, plan, quadratic, limit):
         d, ds = take(given, V, goal, s, log.seconds, quadratic)
         part = next((t for t in PARTS if goals.is_possible(goal, s + t * ds)), 0.0)
         V, s = V + part * d, s + part * ds
-        final = s if goal is given.goal else freedom(given, V)
+        final = s if goal is given.goal else None
         size = np.linalg.norm(d, axis=1).max()
         step = log.record(kind, goal, V, final, size)
         if step is None or log.done:

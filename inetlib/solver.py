@@ -129,7 +129,7 @@ def _check_options(*options):
 def _solve(given, *options):
     formulation, residual, via, stride, shape_steps, tolerance, iterations = options[:7]
     log = runs.Log(given, tolerance, *options[7:])
-    with log.bar:
+    with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         if formulation != "ratio":
             solve = spsolve if formulation == "paper, spsolve" else None
             runs.paper(log, via, stride, 17 if iterations is None else iterations, solve)

@@ -85,7 +85,9 @@ def shape_step(problem, V, goal, s, seconds, quadratic=False):
 
 def _freedom(A, b):
     """Solution of the small system of the freedom s (0, 1 or 2 unknowns)."""
-    return np.linalg.lstsq(A, b, rcond=None)[0] if len(b) else b
+    if not (len(b) and np.isfinite(A).all() and np.isfinite(b).all()):
+        return np.full(len(b), np.nan)  # no freedom, or a run that has diverged
+    return np.linalg.lstsq(A, b, rcond=None)[0]
 
 
 def angle_step(problem, V, goal, s, seconds, quadratic=False):
