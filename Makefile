@@ -35,6 +35,7 @@ notebooks: $(READY)
 
 bench: $(READY)
 	$(BIN)/python bench/bench_solver.py
+	$(BIN)/python bench/random_patches.py
 
 lint: $(READY)
 	$(BIN)/ruff format .

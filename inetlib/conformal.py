@@ -9,6 +9,7 @@ Paper: Sec. 3.3, App. A.2.
 import numpy as np
 
 from . import mesh, parallelogram
+from .planar import planar_net as planar_net  # public here too
 
 
 def shear(z, theta0):
@@ -44,7 +45,7 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     z and z^2, 1 for exp, -1 for sin and cos, c^2 for exp(cz).  The image of the grid then
     has both angles exactly, at any size of the cells; the grid itself up to O(edge^2).
 
-    Paper: Sec. 3.3, App. A.2 (kappa: beyond the paper).
+    Paper: Sec. 3.3, App. A.2 (beyond the paper: B3, kappa: B6).
     """
     lam, mu = parallelogram.ratios(theta, theta0)
     m, n = mesh._check_counts(m, n)
@@ -81,7 +82,7 @@ def complex_ratios(z):
 
     An isogonal net has the constants K = lam exp(i theta) and R = exp(i theta0) / mu.
 
-    Paper: Eq. (11), Eq. (12) in complex form (beyond the paper).
+    Paper: Eq. (11), Eq. (12) in complex form (beyond the paper: B6).
     """
     v1, v2, v3, v4 = z[:-1, 1:], z[:-1, :-1], z[1:, :-1], z[1:, 1:]
     d1, d2 = v3 - v1, v4 - v2

@@ -85,7 +85,7 @@ def web(profile, theta, theta0, m, n=None, method="exact", equation="lam"):
            "paper"   the published algorithm, on the smooth loxodromes, with its own equation
                      for the next parallel, equation = "lam"; or the better "mu"
 
-    Paper: Alg. 1, Eq. (16), App. A.3, Sec. 5.3.
+    Paper: Alg. 1, Eq. (16), App. A.3, Sec. 5.3 (beyond the paper: B4, B5).
     """
     surfaces.check_profile(profile)
     theta, theta0 = _scalar_angle("theta", theta), _scalar_angle("theta0", theta0)
@@ -212,7 +212,7 @@ def closings(major, minor, theta, theta0, limit=96, count=10):
     closes with a shift of k quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where
     W = 2 pi minor / sqrt(major^2 - minor^2) is the period of the Mercator coordinate.
 
-    Paper: Sec. 5.3 (closed webs, beyond the paper).
+    Paper: Sec. 5.3 (closed webs, beyond the paper: B4).
     """
     wide = _torus_width(major, minor)
     theta, theta0 = _scalar_angle("theta", theta), _scalar_angle("theta0", theta0)
@@ -241,7 +241,7 @@ def torus_web(major, minor, m, n, shift):
     around the axis.  All quads have the same two angles, net.theta and net.theta0, near those
     of the smooth web (see `closings`).  ValueError when no closed web is found.
 
-    Paper: Sec. 5.3 (closed webs, beyond the paper).
+    Paper: Sec. 5.3 (closed webs, beyond the paper: B4).
     """
     wide = _torus_width(major, minor)
     m, n = _whole("m", m, 3), _whole("n", n, 3)

@@ -170,7 +170,7 @@ def label(Q):
     boundary loop or the loop of faces that forbids a labelling: an interior vertex of odd
     valence, a hole with an odd sum of (corner valence - 1), a twisted closed strip.
 
-    Paper: Sec. 4.1 (labels; beyond the paper).
+    Paper: Sec. 4.1 (labels; beyond the paper: B9).
     """
     Q = check_quads(Q).copy()
     one, two = pairs(Q).T

@@ -225,7 +225,7 @@ def log_ratios(theta, theta0):
 
     theta, theta0: radians, numbers or arrays that broadcast; ValueError outside (0, pi).
 
-    Paper: inverse of Lemma 1 (beyond the paper).
+    Paper: inverse of Lemma 1 (beyond the paper: B1).
     """
     theta, theta0 = _require_angle("theta", theta), _require_angle("theta0", theta0)
     xp = _lib(theta, theta0)
@@ -240,7 +240,7 @@ def ratios(theta, theta0):
     theta, theta0: radians, numbers or arrays that broadcast; ValueError outside (0, pi).
     theta = theta0 gives lam = mu = cos theta + sqrt(1 + cos^2 theta).
 
-    Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1 (beyond the paper).
+    Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1 (B1).
     """
     log_lam, log_mu = log_ratios(theta, theta0)
     xp = _lib(log_lam, log_mu)
@@ -250,7 +250,7 @@ def ratios(theta, theta0):
 def rho(lam, mu):
     """The parallelogram as one complex number: rho = X_v / X_u = exp(i theta0) / mu.
 
-    Paper: Sec. 3.1 in complex form (beyond the paper).
+    Paper: Sec. 3.1 in complex form (beyond the paper: B2).
     """
     lam, mu = _require_admissible(lam, mu)
     xp = _lib(lam, mu)
@@ -265,7 +265,7 @@ def diagonal_ratio(rho):
     rho: complex number, array or symbol, not 1, else ValueError.  In terms of s = Y_v / Y_u
     and r = 1 / rho it is the involution s = (r + 1) / (r - 1), r = (s + 1) / (s - 1).
 
-    Paper: Thm 7 in complex form (beyond the paper).
+    Paper: Thm 7 in complex form (beyond the paper: B2).
     """
     if _lib(rho) is np:
         rho = np.asarray(rho, dtype=complex)[()]
@@ -279,7 +279,7 @@ def from_rho(rho):
 
     rho: finite complex number or array with positive imaginary part; else ValueError.
 
-    Paper: Lemma 1 in complex form (beyond the paper).
+    Paper: Lemma 1 in complex form (beyond the paper: B2).
     """
     rho = np.asarray(rho, dtype=complex)
     if not np.all((rho.imag > 0) & np.isfinite(rho)):

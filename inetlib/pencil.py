@@ -6,7 +6,7 @@ the parallelogram are four families of circles and rays there:
     mu      circles about 0            lam     circles of Apollonius of -1 and 1
     theta0  rays from 0                theta   arcs through -1 and 1
 
-Every function takes numbers or sympy symbols, as in `parallelogram`.
+Every function takes numbers, arrays or sympy symbols, as in `parallelogram`.
 
 Paper: Sec. 3.1 (beyond the paper: B2, B10).
 """
@@ -35,7 +35,7 @@ def cross_ratio(a, b, c, d):
     Paper: Sec. 3.1 (beyond the paper: B10).
     """
     below = _area(a, d) * _area(b, c)
-    if below == 0:
+    if np.any(below == 0):
         raise ValueError("two of the lines coincide: the cross ratio is infinite")
     return _area(a, c) * _area(b, d) / below
 
@@ -78,7 +78,7 @@ def lam_circle(lam):
 
     Paper: Sec. 3.1 (beyond the paper: B2).
     """
-    if lam == 1:
+    if np.any(lam == 1):
         raise ValueError("lam = 1: the imaginary axis, no circle")
     return (lam**2 + 1) / (lam**2 - 1), 2 * lam / abs(lam**2 - 1)
 

@@ -10,16 +10,16 @@ Paper: Sec. 3.3 (beyond the paper: B7).
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, kron
-from scipy.sparse.csgraph import connected_components, shortest_path
+from scipy.sparse import bsr_array, coo_array, csr_array, diags_array, kron
+from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, linear, mesh, parallelogram
+from . import adjacency, linear, mesh, outline, parallelogram
 
 PENALTY = 1e6  # of the equations; the multipliers make them exact
+POWER = 1.5  # of the vertex count in the weight of smoothness: alike on fine meshes
 STEPS = 30  # at most, of the multipliers and of the gliding boundary
 EXACT = 1e-9  # residuals above this fraction of a diagonal mean: there is no such net
 SLIDE = 0.01  # weight of the distance along the outline, beside 1 for that across it
-SAMPLES = 1000  # of an outline given as a function
 
 
 class Planar(NamedTuple):
@@ -27,7 +27,7 @@ class Planar(NamedTuple):
 
     V         (n, 3) vertices, z = 0
     residual  the largest |d2 - K d1| / |d1| of all faces
-    freedom   complex numbers to choose, handles included: vertices less faces (rarely more)
+    freedom   how many vertices may be chosen, in good places: vertices less faces
     distance  the largest distance of a boundary vertex from its outline; nan without one
     flipped   faces whose edges cross
     wound     interior vertices around which the net winds more than once
@@ -64,15 +64,17 @@ def planar_net(Q, theta, theta0, handles=None, boundary=None, start=None, smooth
     """
     K = factor_k(theta, theta0)
     Q, count = _check_mesh(Q)
-    held, places = _check_handles(handles, count)
-    loops = _check_boundary(boundary, Q, count)
-    start = None if start is None else _points(start, "start", count)
+    held, places = outline.handles(handles, count)
+    loops = outline.loops(boundary, Q, count)
+    start = None if start is None else outline.points(start, "start", count)
     _check_enough(held, loops, start, smooth)
-    centre, size = _frame(places, *(outline for _, outline in loops), start)
+    centre, size = _frame(places, *(curve for _, curve in loops), start)
     places = (places - centre) / size
-    loops = [(loop, (outline - centre) / size) for loop, outline in loops]
+    loops = [(loop, (curve - centre) / size) for loop, curve in loops]
     start = None if start is None else (start - centre) / size
-    task = _Task(Q, K, held, places, smooth)
+    alone = not loops and len(held) > 1
+    weight = 1.0 if alone else smooth * (count / 1000) ** POWER
+    task = _Task(Q, K, held, places, weight)
     z = _first(task, loops, start)
     if loops:
         z = _glide(task, loops, z)
@@ -102,6 +104,45 @@ def equations(Q, K):
     return linear.rows(row, Q, Q.max() + 1)
 
 
+# --- input --------------------------------------------------------------------------------
+
+
+def _check_mesh(Q):
+    Q = adjacency.check_quads(Q)
+    if not mesh.is_labelled(Q):
+        raise ValueError("the faces do not agree on u and v: call mesh.label first")
+    count = int(Q.max()) + 1
+    parts, _ = connected_components(_graph(Q, count), directed=False)
+    if parts > 1:
+        unused = np.setdiff1d(np.arange(count), Q)
+        if unused.size:
+            raise ValueError(f"vertex {unused[0]} belongs to no face")
+        raise ValueError(f"the mesh has {parts} separate parts: give them one by one")
+    return Q, count
+
+
+def _check_enough(held, loops, start, smooth):
+    if not (np.isfinite(smooth) and smooth >= 0):
+        raise ValueError(f"smooth = {smooth}: a number >= 0 is wanted")
+    if len(held) < 2 and not loops and start is None:
+        raise ValueError(
+            f"{len(held)} handles do not fix size and position: two of them, a boundary or a "
+            "start is wanted"
+        )
+    if smooth == 0 and (loops or len(held) > 1):
+        raise ValueError("smooth = 0: only the net closest to a start is fixed without it")
+
+
+def _frame(*points):
+    """Centre and size of all the points given, so that the numbers inside are about 1."""
+    every = np.concatenate([z for z in points if z is not None])
+    centre = every.mean()
+    size = np.abs(every - centre).max()
+    if not size > 1e-12 * np.abs(every).max():
+        raise ValueError("all the points given coincide: the net would collapse")
+    return centre, size
+
+
 # --- the linear problem -------------------------------------------------------------------
 
 
@@ -126,8 +167,8 @@ class _Task:
         weights (n, 2, 2), targets complex (n,).  Multipliers are improved, by solving with
         the same factors, as long as the equations profit.
         """
-        blocks = np.arange(self.count), np.arange(self.count + 1)
-        energy = self.fairness + _blocks(weights, *blocks)
+        blocks = weights, np.arange(self.count), np.arange(self.count + 1)
+        energy = self.fairness + csr_array(bsr_array(blocks))
         slope = np.einsum("nij,nj->ni", weights, _pairs(targets)).ravel()
         z = np.zeros(self.count, dtype=complex)
         z[self.held] = self.places
@@ -147,12 +188,6 @@ class _Task:
         return x[::2] + 1j * x[1::2]
 
 
-def _blocks(weights, indices, starts):
-    from scipy.sparse import bsr_array
-
-    return csr_array(bsr_array((weights, indices, starts)))
-
-
 def _fairness(Q, count):
     """Squared second differences along the polylines, and the twist of the faces: (n, n)."""
     triples = adjacency.triples(Q)
@@ -162,13 +197,18 @@ def _fairness(Q, count):
 
 
 def _layout(Q, count):
-    """Rough places of the vertices, from the mesh alone: steps from three far vertices."""
+    """Places of the vertices for the ordering: the longest boundary on a circle (Tutte)."""
     graph = _graph(Q, count)
-    steps = []
-    for _ in range(3):
-        far = np.argmax(np.min(steps, axis=0)) if steps else 0
-        steps.append(shortest_path(graph, directed=False, unweighted=True, indices=far))
-    return np.stack(steps, axis=1)
+    graph = graph.maximum(graph.T)
+    rim = max(adjacency.boundary_loops(Q), key=len, default=np.arange(3))
+    z = np.zeros(count, dtype=complex)
+    z[rim] = np.exp(2j * np.pi * np.arange(len(rim)) / len(rim))
+    inner = np.setdiff1d(np.arange(count), rim)
+    if len(inner):
+        laplacian = (diags_array(graph.sum(axis=1)) - graph).tocsr()[inner]
+        inverse = linear.factor(laplacian[:, inner].tocsr())
+        z[inner] = [1, 1j] @ np.stack([inverse(x) for x in _pairs(-laplacian @ z).T.copy()])
+    return _pairs(z)
 
 
 def _graph(Q, count):
@@ -186,14 +226,13 @@ def _pairs(z):
 def _first(task, loops, start):
     """The net before the boundary glides: from the handles, the start or an even spread."""
     weights, targets = np.zeros((task.count, 2, 2)), np.zeros(task.count, dtype=complex)
-    if start is not None:
+    enough = len(task.held) > 1
+    if start is not None and (loops or not enough):
         weights[:], targets = np.eye(2), start
-    elif len(task.held) < 2:
-        for loop, outline in loops:
+    elif not enough:
+        for loop, curve in loops:
             weights[loop] = np.eye(2)
-            targets[loop] = _spread(outline, len(loop))
-    if start is not None and len(task.held) >= 2 and not loops:
-        weights[:] = 0  # the handles decide
+            targets[loop] = outline.spread(curve, len(loop))
     return task.solve(weights, targets)
 
 
@@ -201,36 +240,14 @@ def _glide(task, loops, z):
     """Boundary vertices slide along their outlines: tangent lines at the closest points."""
     for _ in range(STEPS):
         weights, targets = np.zeros((task.count, 2, 2)), np.zeros(task.count, dtype=complex)
-        for loop, outline in loops:
-            targets[loop], tangent = _closest(z[loop], outline)
+        for loop, curve in loops:
+            targets[loop], tangent = outline.closest(z[loop], curve)
             normal = _pairs(1j * tangent)
             weights[loop] = normal[:, :, None] * normal[:, None, :] + SLIDE * np.eye(2)
         moved, z = z, task.solve(weights, targets)
         if np.abs(z - moved).max() < 1e-7:
             break
     return z
-
-
-def _closest(points, outline):
-    """The closest points on a closed polyline and the unit tangents there, complex (k,)."""
-    step = np.roll(outline, -1) - outline
-    outline, step = outline[step != 0], step[step != 0]
-    feet, tangents = np.empty(len(points), dtype=complex), np.empty(len(points), dtype=complex)
-    for k, point in enumerate(points):
-        part = np.clip(((point - outline) / step).real, 0, 1)
-        found = outline + part * step
-        near = np.argmin(np.abs(found - point))
-        feet[k], tangents[k] = found[near], step[near] / abs(step[near])
-    return feet, tangents
-
-
-def _spread(outline, count):
-    """Points at equal distances along a closed polyline, counter-clockwise."""
-    ring = np.append(outline, outline[0])
-    if np.sum((np.conj(ring[:-1]) * ring[1:]).imag) < 0:
-        ring = ring[::-1]
-    length = np.concatenate([[0], np.cumsum(np.abs(np.diff(ring)))])
-    return np.interp(np.arange(count) / count * length[-1], length, ring)
 
 
 # --- report -------------------------------------------------------------------------------
@@ -240,16 +257,18 @@ def _report(task, loops, z, centre, size):
     d1, d2 = z[task.Q[:, 2]] - z[task.Q[:, 0]], z[task.Q[:, 3]] - z[task.Q[:, 1]]
     off, long = np.abs(d2 - task.K * d1), np.abs(d1)
     freedom = task.count - len(task.Q)
+    if not long.max() > 1e-10:
+        raise ValueError("the net collapses to a point: no other fits this mesh and these angles")
     if off.max() > EXACT * long.mean():
         raise ValueError(
             f"no net with these angles passes through the {len(task.held)} handles: the equations "
-            f"stay off by {off.max() / long.mean():.2g} of a diagonal; the mesh has {freedom} "
-            "complex freedoms, fewer in every part of it"
+            f"stay off by {off.max() / long.mean():.2g} of a diagonal; there are {freedom} complex "
+            "freedoms, best spent on every second boundary vertex"
         )
-    if long.min() <= 1e-9 * long.max() or long.max() <= 1e-12:
-        raise ValueError(f"the net collapses at face {np.argmin(long)}: move or remove handles")
+    if long.min() <= 1e-9 * long.max():
+        raise ValueError(f"the net collapses at face {np.argmin(long)}: ask for less")
     residual = float((off / long).max())
-    apart = [np.abs(_closest(z[loop], outline)[0] - z[loop]).max() for loop, outline in loops]
+    apart = [np.abs(outline.closest(z[loop], curve)[0] - z[loop]).max() for loop, curve in loops]
     distance = float(size * max(apart)) if loops else np.nan
     flipped, wound = faults(z, task.Q)
     z = centre + size * z

@@ -170,7 +170,7 @@ def exact_ring(profile, theta, theta0, m):
     The residual is positive at t0 itself, so that the first sign change is the shortest row.
     The step raises NoRow where there is none below profile.stop.
 
-    Paper: Alg. 1, App. A.3 (straight distances).
+    Paper: Alg. 1, App. A.3 (straight distances; beyond the paper: B5).
     """
     mu, psi = ratios(theta, theta0)[1], _psi(theta, theta0, m)
     smooth = 2 * np.pi / m * np.sin(theta0) / mu

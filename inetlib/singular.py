@@ -37,16 +37,16 @@ def vertex(valence, rings):
 def polar_cap(sides, rings):
     """A polygon whose corners have valence 3, in `rings` rings of `sides` quads: (V, Q, polygon).
 
-    u runs around, v outwards: labelled for any number of sides >= 3.  V: plane, z = 0, the
-    radii in a geometric series that makes the faces nearly square.
+    u runs around, v inwards: labelled for any number of sides >= 3.  V: plane, z = 0, the
+    radii in a geometric series that makes the faces nearly square (from 12 sides on).
 
     Paper: Sec. 4.1 (labels; beyond the paper: B9).
     """
     _check("sides", sides, 3), _check("rings", rings, 1)
-    z = np.exp(2 * np.pi / sides * (1j * np.arange(sides)[:, None] + np.arange(rings + 1) - rings))
+    around, step = 2 * np.pi / sides * np.arange(sides), min(2 * np.pi / sides, 0.5)
+    z = np.exp(1j * around[:, None] + step * np.arange(-rings, 1))
     index = np.arange(z.size).reshape(z.shape)
-    # outwards is to the right of counter-clockwise: walk the other way around
-    Q = _cells(np.vstack([index, index[:1]])[::-1])
+    Q = _cells(np.vstack([index, index[:1]])[:, ::-1])  # v inwards is to the left of u
     V = np.stack([z.real.ravel(), z.imag.ravel(), np.zeros(z.size)], axis=1)
     return V, Q, index[:, 0]
 

@@ -116,7 +116,7 @@ def mercator(profile):
     parametrisation of the surface of revolution.  About 1e-12 for smooth callables, 1e-9 for
     cubic splines.  ValueError for a profile that `check_profile` refuses.
 
-    Paper: Sec. 5.2 (isothermal; beyond the paper for general profiles).
+    Paper: Sec. 5.2 (isothermal; beyond the paper: B4).
     """
     check_profile(profile)
 

@@ -79,7 +79,8 @@ def test_a_rerun_prints_and_draws_what_is_stored(rerun):
 @pytest.mark.notebook
 def test_a_rerun_draws_figures_of_the_recorded_data(rerun):
     stored, _, figures = rerun
-    tagged = {t for c in code_cells(stored) for t in c.metadata.get("tags", []) if t[:3] == "fig"}
+    tags = {t for cell in code_cells(stored) for t in cell.metadata.get("tags", [])}
+    tagged = {t for t in tags if t.startswith(("fig", "beyond"))}
     drawn = json.loads((figures / "manifest.json").read_text()) if figures.exists() else {}
     assert set(drawn) == tagged
     for name, entry in drawn.items():

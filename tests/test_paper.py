@@ -22,9 +22,13 @@ EVERYTHING = (
 )
 
 
-def rows():
-    """The table of PAPER.md: {item: (functions, tests, notebook, heading)}."""
-    lines = (ROOT / "PAPER.md").read_text(encoding="utf-8").splitlines()
+BEYOND = [f"B{k}" for k in range(1, 11)]
+
+
+def rows(part=0):
+    """A table of PAPER.md, of the paper (0) or beyond it (1): {item: (functions, tests, page)}."""
+    text = (ROOT / "PAPER.md").read_text(encoding="utf-8").split("\n## Beyond the paper\n")[part]
+    lines = text.splitlines()
     cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line[:1] == "|"]
     table = {}
     for item, _, functions, tests, notebook, status in cells[2:]:
@@ -50,21 +54,23 @@ def names_in(path):
 
 
 def cited(doc):
-    """The numbered items in the last line of a docstring."""
-    return set(ITEM.findall(doc.splitlines()[-1]))
+    """The numbered items in the last line of a docstring, and the results beyond the paper."""
+    last = doc.splitlines()[-1]
+    return set(ITEM.findall(last)), set(re.findall(r"\bB\d+\b", last))
 
 
 def test_every_numbered_item_stands_exactly_once():
     assert sorted(rows()) == sorted(EVERYTHING)
+    assert list(rows(1)) == BEYOND
 
 
-@pytest.mark.parametrize("item", rows())
-def test_a_row_names_a_function_a_test_and_a_heading_that_exist(item):
-    functions, tests, notebook = rows()[item]
+@pytest.mark.parametrize(("part", "item"), [(k, item) for k in (0, 1) for item in rows(k)])
+def test_a_row_names_a_function_a_test_and_a_heading_that_exist(part, item):
+    functions, tests, notebook = rows(part)[item]
     docs = {name: inspect.getdoc(value) for name, value in public_functions()}
     assert functions and tests
     for name in functions:
-        assert item in cited(docs[name]), f"{name} does not cite {item}"
+        assert item in cited(docs[name])[part], f"{name} does not cite {item}"
     for name in tests:
         path, _, test = name.partition("::")
         assert test in names_in(f"tests/{path}"), name
@@ -76,10 +82,11 @@ def test_a_row_names_a_function_a_test_and_a_heading_that_exist(item):
 
 
 def test_every_docstring_that_cites_an_item_stands_in_its_row():
-    table = rows()
-    for name, value in public_functions():
-        for item in cited(inspect.getdoc(value)):
-            assert name in table[item][0], f"the row of {item} lacks {name}"
+    for part in (0, 1):
+        table = rows(part)
+        for name, value in public_functions():
+            for item in cited(inspect.getdoc(value))[part]:
+                assert name in table[item][0], f"the row of {item} lacks {name}"
 
 
 def test_every_erratum_has_a_test_and_each_number_is_accounted_for():

@@ -128,12 +128,12 @@ def store(notebook, path):
 
 def table(seconds):
     """One line a figure that was drawn: deviations in degrees, seconds."""
-    rows = [f"{'figure':8} {'max |dtheta| deg':>18} {'max |dtheta0| deg':>18} {'seconds':>9}"]
+    rows = [f"{'figure':16} {'max |dtheta| deg':>18} {'max |dtheta0| deg':>18} {'seconds':>9}"]
     for name, entry in publish.read_manifest(ROOT / "figures").items():
         if name in seconds:
             off = [entry["max_deviation_theta_deg"], entry["max_deviation_theta0_deg"]]
             cells = ["-" if x is None else f"{x:.9f}" for x in off]
-            rows.append(f"{name:8} {cells[0]:>18} {cells[1]:>18} {seconds[name]:9.2f}")
+            rows.append(f"{name:16} {cells[0]:>18} {cells[1]:>18} {seconds[name]:9.2f}")
     rows.append("over all faces that claim the angles; nets sampled from curves: see manifest.json")
     return "\n".join(rows)
 

@@ -8,6 +8,7 @@ import numpy as np
 from .. import mesh, plot, publish, reference, singular, solver
 from . import _optimised
 
+DEGREE = np.pi / 180
 FACE = "#7b2d8b"  # the singular face
 SEAM = "#d0006f"
 ROWS = [[f"{letter}{k}" for k in range(6)] for letter in "ABC"]
@@ -49,7 +50,7 @@ def verdict(Q):
     return "labelled"
 
 
-def nets(theta=np.radians(60), theta0=np.radians(45), dome=0.5):
+def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
     """Two nets in space: {"D": (V, Q, polygon, `solver.Result`), "E"}; V is the start.
 
     D: an octagon with corners of valence 4 in six rings; E: a polar cap of 20 sides.  Both
@@ -60,9 +61,11 @@ def nets(theta=np.radians(60), theta0=np.radians(45), dome=0.5):
     meshes = {"D": mesh.polygon_rings(8, 6), "E": singular.polar_cap(20, 7)}
     found = {}
     for letter, (V, Q, polygon) in meshes.items():
-        V = _domed(V, dome, 0.1 if letter == "D" else 0.0)
+        V = _domed(V, *((dome, 0.1) if letter == "D" else (2 * dome, 0.0)))
         near = reference.mesh(V, Q)
-        result = solver.optimize(V, Q, theta, theta0, reference=near, polygons=[polygon])
+        result = solver.optimize(
+            V, Q, theta, theta0, reference=near, polygons=[polygon], tolerance=1e-12
+        )
         found[letter] = V, Q, polygon, result
     return found
 
@@ -75,7 +78,7 @@ def _domed(V, dome, wave):
     return V / np.linalg.norm(np.ptp(V, axis=0))
 
 
-def draw(theta=np.radians(60), theta0=np.radians(45), azimuth=-70, elevation=48):
+def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 
     theta, theta0: radians, of the nets; azimuth, elevation: the camera, degrees.  Edges have
@@ -96,7 +99,9 @@ def draw(theta=np.radians(60), theta0=np.radians(45), azimuth=-70, elevation=48)
     for letter, (_, Q, polygon, result) in found.items():
         corners = result.V[polygon]
         _optimised.surface(axes[letter], view, result.V, Q, polygons=[(corners, FACE)])
-        angles = rf"$\theta={np.degrees(theta):.4g}\degree,\ \theta_0={np.degrees(theta0):.4g}\degree$"
+        angles = (
+            rf"$\theta={np.degrees(theta):.4g}\degree,\ \theta_0={np.degrees(theta0):.4g}\degree$"
+        )
         plot.panel(axes[letter], letter, f"{texts[letter]}: {angles}")
     claims = {f"{name} {meshes[name][0]}": text.replace("\n", " ") for name, text in words.items()}
     numbers = {}
@@ -134,6 +139,9 @@ def _small(ax, V, Q, polygon):
         lines = [(V[pair], plot.COLOURS[k], 0.9) for k in "uv" for pair in edges[k]]
         view = plot.camera(*np.radians([-75, 32]))
         plot.scene(ax, view, V, Q, "#e3e7ee", lines, lift=0.01)
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = 0.53 * (high - low).max() * np.array([-1, 1])
+    ax.set(xlim=(low + high)[0] / 2 + half, ylim=(low + high)[1] / 2 + half)
     if len(bad):
         plot.curves(ax, points[bad], "white", 3.4, zorder=5)
         plot.curves(ax, points[bad], SEAM, 2.6, (0, (0.6, 0.9)), zorder=6)
@@ -143,4 +151,6 @@ def _title(ax, name, title, words):
     letter = name[0] if name[1] == "0" else ""
     ax.set_title((rf"$\mathbf{{{letter}}}$  " if letter else "") + title, loc="left", fontsize=9)
     colour = plot.INK if words == "labelled" else SEAM
-    ax.text(0.5, -0.03, words, transform=ax.transAxes, ha="center", va="top", size=7.5, color=colour)
+    ax.text(
+        0.5, -0.03, words, transform=ax.transAxes, ha="center", va="top", size=7.5, color=colour
+    )

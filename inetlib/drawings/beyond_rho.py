@@ -4,7 +4,6 @@ Paper: Sec. 3.1 (beyond the paper: B2, B10).
 """
 
 import numpy as np
-
 from matplotlib.patheffects import withStroke
 
 from .. import parallelogram, pencil, plot, publish

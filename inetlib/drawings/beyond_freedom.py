@@ -1,0 +1,126 @@
+"""What may still be chosen of an isogonal net: one curve, two opposite ones, a symmetry, ...
+
+Paper: Sec. 6.1 (beyond the paper: B8).
+"""
+
+import numpy as np
+from matplotlib.colors import Normalize
+
+from .. import measure, mesh, plot, publish, reference, solver, surfaces
+from ..problem import Weights
+from . import _optimised
+
+CELLS = 12
+DEGREE = np.pi / 180
+TITLES = {
+    "A": "one side stays",
+    "B": "a curve in the middle stays",
+    "C": "two opposite sides stay",
+    "D": "near the boundary curve",
+    "E": "half-turn symmetry",
+    "F": "the whole boundary: no net",
+}
+SOFT = 0.03  # weight of the boundary
+PRESCRIBED, OLD = "#1a1a1a", "#8a8a8a"
+
+
+def curves(m=CELLS):
+    """The vertices that stay, {panel: numbers}, in a grid of m x m quads.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
+    rim = mesh.boundary_loops(mesh.grid_quads(m, m))[0]
+    none = index[0, :0]
+    both = np.concatenate([index[0], index[-1]])
+    return {"A": index[0], "B": index[m // 2], "C": both, "D": none, "E": none, "F": rim}
+
+
+def vault(m=CELLS):
+    """A roof that a half turn about the vertical axis takes to itself: (V, Q), m x m quads.
+
+    Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    u, v = np.meshgrid(*2 * [np.linspace(-1, 1, m + 1)], indexing="ij")
+    x, y = 1.1 * u + 0.3 * v, v - 0.15 * u + 0.1 * u**3
+    z = 0.35 * np.cos(1.6 * u + 0.6 * v) - 0.25 * v**2
+    V = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    return V / np.linalg.norm(np.ptp(V, axis=0)), mesh.grid_quads(m, m)
+
+
+def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
+    """The starts and what became of them: {panel: (V, Q, `solver.Result`)}.
+
+    A, B, C, F: the freeform roof with the vertices of `curves` fixed; D: with a heavy weight
+    of the boundary; E: `vault`, without a reference surface.  theta, theta0: radians.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    found = {}
+    for letter, stay in curves(m).items():
+        V, Q = vault(m) if letter == "E" else surfaces.freeform_patch(m, m)
+        near = None if letter == "E" else reference.mesh(V, Q)
+        weights = Weights(boundary=SOFT) if letter == "D" else None
+        options = {"reference": near, "fixed": stay, "weights": weights, "tolerance": 1e-12}
+        found[letter] = V, Q, solver.optimize(V, Q, theta, theta0, iterations=40, **options)
+    return found
+
+
+def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
+    """Six wishes at the same two angles: five are granted, the last one is not.
+
+    theta, theta0: radians; azimuth, elevation: the camera, degrees.  Black: the vertices
+    that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
+    of their deviation.  Returns a `publish.Drawing`.
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
+    view = plot.camera(*np.radians([azimuth, elevation]))
+    found, stay = nets(theta, theta0), curves()
+    off = {k: deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
+    scale = Normalize(0, 5 * np.ceil(off["F"].max() / 5))
+    for letter, (V, Q, result) in found.items():
+        colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
+        lines = [(_closed(V, Q), OLD, 0.9)]
+        lines += [(line, PRESCRIBED, 2.4) for line in _lines(result.V, Q, stay[letter])]
+        _optimised.surface(axes[letter], view, result.V, Q, colours, lines)
+        plot.panel(axes[letter], letter, TITLES[letter])
+    _optimised.align(list(axes.values()), 0.12)
+    _optimised.bar(axes["F"], scale, [0.02, 0.06, 0.4, 0.035])
+    good = {k: x for k, x in found.items() if x[2].converged}
+    claims = {f"{k} converged": bool(x[2].converged) for k, x in found.items()}
+    for letter, (_, Q, result) in good.items():
+        claims |= _optimised.claims({letter: result}, Q)
+    return publish.Drawing(
+        "beyond_freedom",
+        figure,
+        "inetlib.drawings.beyond_freedom.draw",
+        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
+        {k: np.round(r.V, _optimised.DIGITS) for k, (_, _, r) in good.items()},
+        [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
+        claims,
+    )
+
+
+def deviation(V, Q, theta, theta0):
+    """The larger deviation of theta and theta0 of each face, degrees (f,).
+
+    Paper: Sec. 6.1 (beyond the paper: B8).
+    """
+    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), (theta, theta0), strict=True)]
+    return np.degrees(np.max(off, axis=0))
+
+
+def _closed(V, Q):
+    rim = mesh.boundary_loops(Q)[0]
+    return V[np.append(rim, rim[0])]
+
+
+def _lines(V, Q, stay):
+    """The vertices that stay as point arrays, one a row of the grid, or the whole rim."""
+    if len(stay) > 2 * (CELLS + 1):
+        return [_closed(V, Q)]
+    return [V[row] for row in stay.reshape(-1, CELLS + 1)]

@@ -1,0 +1,187 @@
+"""Angles at the vertices of isogonal nets: how far from theta and theta0, and how fast they come.
+
+Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+"""
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from .. import conformal, loxodrome, measure, mesh, plot, publish, reference, solver, surfaces
+
+DEGREE = np.pi / 180
+SIZES = 8, 16, 32, 64
+NAMES = {
+    "z2": "$z^2$",
+    "exp": r"$\exp$",
+    "inverse": "$1/z$",
+    "sphere": "sphere, loxodromes",
+    "roof": "roof, optimised",
+}
+MARKERS = dict(zip(NAMES, "xosD^", strict=True))
+_COLOUR = dict(zip(NAMES, [plot.GREY, plot.INK, "#7b2d8b", "#5b7fb5", "#9a5b1f"], strict=True))
+MOST = 0.9  # of the vertices of the roof
+
+
+def nets(theta=60 * DEGREE, theta0=45 * DEGREE, sizes=SIZES):
+    """Nets of m x m quads, or m around the axis: {name: [(V, Q) for m in sizes]}.
+
+    The images of a sheared grid of side 1 under (z + 1.2)^2, exp and 1 / (z + 1.2); the exact
+    web on a sphere; an optimised freeform roof of sizes[0] x sizes[0] quads, refined by a
+    spline and optimised again.  All have exactly the two angles (radians) in their faces, except
+    under 1/z, which has them up to O(m^-2).
+
+    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+    """
+    maps = {
+        "z2": (lambda z: (z + 1.2) ** 2, 0),
+        "exp": (np.exp, 1),
+        "inverse": (lambda z: 1 / (z + 1.2), 0),
+    }
+    found = {}
+    for name, (f, kappa) in maps.items():
+        grids = (conformal.sheared_grid(theta, theta0, m, m, 0, 1 / m, 1, kappa) for m in sizes)
+        found[name] = [conformal.quads(f(z)) for z in grids]
+    webs = (loxodrome.web(surfaces.sphere_profile(), theta, theta0, m) for m in sizes)
+    found["sphere"] = [(web.V, web.Q) for web in webs]
+    found["roof"] = refined(theta, theta0, sizes)
+    return found
+
+
+def refined(theta, theta0, sizes=SIZES):
+    """An optimised roof and its refinements: [(V, Q) for m in sizes], m x m quads.
+
+    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+    """
+    m = sizes[0]
+    V, Q = surfaces.freeform_patch(m, m)
+    near = reference.mesh(*surfaces.freeform_patch(64, 64))
+    coarse = solver.optimize(V, Q, theta, theta0, reference=near, tolerance=1e-12).V
+    at = np.linspace(0, 1, m + 1)
+    splines = [RectBivariateSpline(at, at, x) for x in coarse.T.reshape(3, m + 1, m + 1)]
+    found = [(coarse, Q)]
+    for m in sizes[1:]:
+        at = np.linspace(0, 1, m + 1)
+        V, Q = np.stack([f(at, at).ravel() for f in splines], axis=1), mesh.grid_quads(m, m)
+        options = {"via": "jump", "shape_steps": 0, "tolerance": 1e-12}
+        found.append((solver.optimize(V, Q, theta, theta0, **options).V, Q))
+    return found
+
+
+def deviation(V, Q, theta, theta0, unit=False, part=1.0):
+    """The deviations of the star angles from (theta, theta0) in degrees, two numbers.
+
+    The largest ones, or those that `part` of the vertices stay below; unit as in
+    `measure.star_angles`.
+
+    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+    """
+    star = measure.star_angles(V, Q, unit)
+    off = np.abs([star.theta - theta, star.theta0 - theta0])
+    return np.degrees(np.quantile(off, part, axis=1))
+
+
+def table(found, theta, theta0, unit=False):
+    """{name: (sizes, 2) degrees}: `deviation` of all nets; 0.9 of the vertices of the roof.
+
+    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+    """
+    return {
+        name: np.array(
+            [deviation(*n, theta, theta0, unit, MOST if name == "roof" else 1.0) for n in row]
+        )
+        for name, row in found.items()
+    }
+
+
+def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
+    """(A) the chords at a vertex, (B) deviations against the size, (C) the numbers, in degrees.
+
+    theta, theta0: radians.  The largest deviation of theta0 over the inner vertices, for the
+    roof the one that 90 % of them stay below.  Full lines: chords over two edges; dotted: unit
+    tangents.  Returns a `publish.Drawing`.
+
+    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
+    """
+    figure, axes = plot.canvas([["A", "B"], ["C", "B"]], 7.4, 4.1, [1, 1.15])
+    found = nets(theta, theta0)
+    chords, units = (table(found, theta, theta0, unit) for unit in (False, True))
+    _star(axes["A"])
+    _slopes(axes["B"], chords, units)
+    _numbers(axes["C"], chords)
+    plot.panel(axes["A"], "A", "the chords at a vertex")
+    plot.panel(axes["B"], "B", r"deviation of $\theta_0$ at vertices, degrees")
+    plot.panel(axes["C"], "C", "the same with chords, in numbers")
+    exact = [
+        (*net, theta, theta0) for name, row in found.items() if name != "inverse" for net in row
+    ]
+    claims = {f"{name}: order": _order(x) for name, x in chords.items() if name != "z2"}
+    claims["z2: largest deviation, degrees"] = round(float(chords["z2"].max()), 9)
+    data = {f"chords {k}": np.round(x, 5) for k, x in chords.items()}
+    return publish.Drawing(
+        "beyond_star",
+        figure,
+        "inetlib.drawings.beyond_star.draw",
+        {"theta": theta, "theta0": theta0},
+        data | {f"units {k}": np.round(x, 5) for k, x in units.items()},
+        exact,
+        claims,
+    )
+
+
+def _order(values):
+    """The order of theta0, from the two finest nets."""
+    last = np.log(values[-2, 1] / values[-1, 1]) / np.log(SIZES[-1] / SIZES[-2])
+    return round(float(last), 2)
+
+
+def _star(ax):
+    u, v = np.exp(0.05j), 0.75 * np.exp(0.95j)
+    right, up, left, down = 1.15 * u, 1.1 * v - 0.06, -0.85 * u + 0.14j, -v + 0.12
+    tips = np.array([right, up, left, down])
+    corners = np.array([right + up + 0.1, up + left, left + down, right + down - 0.05j])
+    rim = np.stack([tips, corners], axis=1).ravel()
+    plot.polygons(ax, rim, [np.arange(8)], "#f0f2f5", plot.GREY, 0.7)
+    for (one, other), family in zip(((right, left), (up, down)), "uv", strict=True):
+        colour = plot.COLOURS[family]
+        plot.curves(ax, [[one, 0j, other]], colour, 1.0)
+        plot.curves(ax, [[one, other]], colour, 2.0, (0, (3, 1.5)))
+    ax.plot(0, 0, "o", color=plot.INK, ms=4, zorder=6)
+    names = {"left": left - 0.2, "right": right + 0.24, "up": up + 0.13j, "down": down - 0.13j}
+    for name, z in names.items():
+        ax.text(z.real, z.imag, name, ha="center", va="center", size=8)
+    ax.margins(0.1)
+
+
+def _slopes(ax, chords, units):
+    ax.set_axis_on()
+    ax.set_aspect("auto")
+    for name, label in NAMES.items():
+        for values, style in ((chords, "-"), (units, ":")):
+            off = values[name][:, 1]
+            if off.max() > 1e-9:
+                mark = {"marker": MARKERS[name], "ms": 4.5, "mfc": "white", "lw": 1.1}
+                text = label if style == "-" or name == "z2" else None
+                ax.loglog(SIZES, off, style, color=_COLOUR[name], label=text, **mark)
+    guide = 0.7 * np.array(SIZES, dtype=float) ** -2
+    ax.loglog(SIZES, guide, color=plot.GREY, lw=0.9, dashes=(6, 3), label="slope $-2$")
+    ax.text(8.2, 6e-4, "full lines: chords\ndotted: unit tangents", size=8)
+    ax.set_xticks(SIZES, SIZES)
+    ax.minorticks_off()
+    ax.set(xlabel="quads on a side, or around the axis, $m$", ylim=(1.2e-4, 9))
+    ax.legend(ncols=2, loc="upper right")
+
+
+def _numbers(ax, chords):
+    heads = ["", *(f"$m={m}$" for m in SIZES[1:]), "order"]
+    rows = [heads]
+    for name, values in chords.items():
+        exact = values.max() < 1e-9
+        numbers = ["exact"] * 3 if exact else [f"{x:.4f}" for x in values[1:, 1]]
+        rows.append([NAMES[name], *numbers, "" if exact else f"{_order(values):.2f}"])
+    ax.set(xlim=(0, 1), ylim=(-0.02, 1.0))
+    ax.set_aspect("auto")
+    for k, row in enumerate(rows):
+        for at, text in zip((0, 0.56, 0.72, 0.88, 1.0), row, strict=True):
+            side = "left" if at == 0 else "right"
+            ax.text(at, 0.92 - 0.165 * k, text, ha=side, va="center", size=8)
+    ax.plot([0, 1], 2 * [0.84], color=plot.INK, lw=0.6)

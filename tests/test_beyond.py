@@ -1,0 +1,387 @@
+"""Beyond the paper: the half plane of rho, the pencil, labels, freedom, angles at vertices."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import sympy as sp
+
+from inetlib import (
+    conformal,
+    freedom,
+    loxodrome,
+    measure,
+    mesh,
+    parallelogram,
+    pencil,
+    publish,
+    reference,
+    singular,
+    solver,
+    surfaces,
+)
+from inetlib.drawings import beyond_freedom, beyond_labels, beyond_rho, beyond_star
+from inetlib.problem import Weights
+
+DEGREE = np.pi / 180
+
+
+def many(count=500, seed=5):
+    """Random points rho of the upper half plane."""
+    rng = np.random.default_rng(seed)
+    return rng.normal(0, 1.5, count) + 1j * np.exp(rng.normal(0, 1, count))
+
+
+# --- the harmonic pencil ------------------------------------------------------------------
+
+
+def test_the_cross_ratio_of_the_web_is_minus_one_for_every_rho():
+    x, y = sp.Symbol("x", real=True), sp.Symbol("y", positive=True)
+    xu, yv, xv, yu = pencil.directions(x + sp.I * y)
+    assert sp.simplify(pencil.cross_ratio(xu, xv, yv, yu) + 1) == 0
+    xu, yv, xv, yu = pencil.directions(many())
+    assert np.allclose(pencil.cross_ratio(xu, xv, yv, yu), -1, atol=1e-9)
+
+
+def test_the_cross_ratio_knows_neither_lengths_nor_signs_but_the_order():
+    lines = 1 + 0j, 2 + 1j, 0.3 + 1j, -1 + 0.4j
+    ratio = pencil.cross_ratio(*lines)
+    scaled = (f * z for f, z in zip((-2, 0.3, -1, 5), lines, strict=True))
+    assert pencil.cross_ratio(*scaled) == pytest.approx(ratio)
+    a, b, c, d = lines
+    assert pencil.cross_ratio(a, b, d, c) == pytest.approx(1 / ratio)
+    assert pencil.cross_ratio(a, c, b, d) == pytest.approx(1 - ratio)
+    slopes = [z.imag / z.real for z in lines]
+    p, q, r, s = slopes
+    assert ratio == pytest.approx((r - p) * (s - q) / ((s - p) * (r - q)))
+    with pytest.raises(ValueError, match="coincide"):
+        pencil.cross_ratio(a, b, c, -2 * a)
+
+
+def test_the_gaps_are_the_angles_between_the_directions():
+    for rho in many(50):
+        shape = parallelogram.from_rho(rho)
+        lines = np.array([*pencil.directions(rho), -1])
+        turned = np.angle(lines[1:] / lines[:-1]) % np.pi
+        gaps = pencil.gaps(shape.lam, shape.mu)
+        assert np.allclose(gaps, turned, atol=1e-9) and min(gaps) > 0
+        assert sum(gaps) == pytest.approx(np.pi)
+        assert gaps[0] + gaps[3] == pytest.approx(shape.theta)
+
+
+def test_cotangents_of_the_half_angles():
+    lam, mu = sp.symbols("lam mu", positive=True)
+    alpha, beta = parallelogram.half_angles(lam, mu)
+    _, theta0 = parallelogram.angles(lam, mu)
+    cot = [sp.cos(x) / sp.sin(x) for x in (alpha, beta)]
+    wanted = [(mu + s * sp.cos(theta0)) / sp.sin(theta0) for s in (1, -1)]
+    for one, other in zip(cot, wanted, strict=True):
+        assert sp.simplify(sp.factor(one - other, deep=True)) == 0
+
+
+def test_four_shapes_contain_the_regular_three_web():
+    for theta, theta0 in ((90, 60), (90, 120), (60, 90), (120, 90)):
+        gaps = np.degrees(pencil.gaps(*parallelogram.ratios(theta * DEGREE, theta0 * DEGREE)))
+        assert sorted(gaps) == pytest.approx([30, 30, 60, 60])
+    gaps = np.degrees(pencil.gaps(1.0, 1.0))
+    assert gaps == pytest.approx([45] * 4)
+
+
+# --- the half plane -----------------------------------------------------------------------
+
+
+def test_every_point_lies_on_its_four_curves():
+    rho = many()
+    lam, mu, theta, theta0 = parallelogram.from_rho(rho)
+    for centre, radius in (pencil.mu_circle(mu), pencil.lam_circle(lam)):
+        assert np.allclose(np.abs(rho - centre), radius, rtol=1e-8)
+    height, radius = pencil.theta_circle(theta)
+    assert np.allclose(np.abs(rho - 1j * height), radius, rtol=1e-8)
+    assert np.allclose(np.abs(1 - 1j * height), radius)  # the circle passes through 1
+    assert np.allclose(np.angle(rho), theta0)
+
+
+def test_the_curves_are_proved_with_symbols():
+    x, y = sp.Symbol("x", real=True), sp.Symbol("y", positive=True)
+    K = sp.simplify(parallelogram.diagonal_ratio(x + sp.I * y))
+    re, im = (sp.simplify(part) for part in K.as_real_imag())
+    lam2 = re**2 + im**2
+    centre, radius2 = (lam2 + 1) / (lam2 - 1), 4 * lam2 / (lam2 - 1) ** 2
+    assert sp.simplify((x - centre) ** 2 + y**2 - radius2) == 0
+    height = -re / im  # -cot theta
+    assert sp.simplify(x**2 + (y - height) ** 2 - 1 - height**2) == 0
+    assert sp.simplify(pencil.theta_circle(sp.pi / 2)[0]) == 0
+
+
+def test_equal_angles_lie_on_one_circle_and_nowhere_else():
+    rho = many()
+    shape = parallelogram.from_rho(rho)
+    centre, radius = pencil.equal_circle()
+    inside = np.abs(rho - centre) < radius
+    assert np.array_equal(inside, shape.lam < shape.mu) and 0.1 < inside.mean() < 0.9
+    for degrees in (20, 60, 135):
+        lam, mu = parallelogram.ratios(degrees * DEGREE, degrees * DEGREE)
+        assert abs(parallelogram.rho(lam, mu) - centre) == pytest.approx(radius)
+
+
+def test_lam_one_is_a_line():
+    with pytest.raises(ValueError, match="imaginary axis"):
+        pencil.lam_circle(1)
+
+
+# --- labels -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("valence", range(3, 9))
+def test_vertices_of_even_valence_can_be_labelled(valence):
+    V, Q = singular.vertex(valence, 3)
+    V, Q = mesh.check(V, Q)
+    d1, d2, _, _ = measure.vectors(V, Q)
+    assert (np.cross(d1, d2)[:, 2] > 0).all() and np.sum(Q == 0) == valence
+    assert len(Q) == 9 * valence and len(np.unique(Q)) == len(V)
+    if valence % 2:
+        with pytest.raises(ValueError, match=f"vertex 0 has the odd valence {valence}"):
+            mesh.label(Q)
+    else:
+        assert mesh.is_labelled(mesh.label(Q))
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 8])
+def test_polar_caps_are_labelled_for_any_number_of_sides(sides):
+    V, Q, polygon = singular.polar_cap(sides, 4)
+    V, Q = mesh.check(V, Q)
+    d1, d2, _, _ = measure.vectors(V, Q)
+    assert (np.cross(d1, d2)[:, 2] > 0).all() and mesh.is_labelled(Q)
+    assert len(Q) == 4 * sides and len(polygon) == sides
+    assert sorted(np.bincount(Q.ravel())[polygon]) == [2] * sides  # and the polygon: valence 3
+    loops = [sorted(loop.tolist()) for loop in mesh.boundary_loops(Q)]
+    assert sorted(polygon.tolist()) in loops
+
+
+def test_the_moebius_strip_has_no_orientation():
+    V, Q = singular.moebius_strip(20, 2)
+    with pytest.raises(ValueError, match="not orientable"):
+        mesh.label(Q)
+    edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
+    assert edges.max() < 0.7  # the seam is closed
+
+
+def test_a_mirrored_face_has_the_inverse_of_one_ratio():
+    V = np.array([[0.1, 1, 0], [0, 0, 0.2], [1.2, 0.1, 0], [1, 1.3, 0.4]])
+    (lam,), (mu,) = measure.ratios(V, np.array([[0, 1, 2, 3]]))
+    assert np.allclose(measure.ratios(V, np.array([[0, 3, 2, 1]])), [[lam], [1 / mu]])
+    assert np.allclose(measure.ratios(V, np.array([[3, 2, 1, 0]])), [[1 / lam], [mu]])
+    assert np.allclose(measure.ratios(V, np.array([[1, 2, 3, 0]])), [[1 / lam], [1 / mu]])
+
+
+def test_the_names_disagree_somewhere_exactly_on_refused_meshes():
+    for _, _, Q, _ in beyond_labels.gallery().values():
+        labelled, edges = singular.seam(Q)
+        good = beyond_labels.verdict(Q) == "labelled"
+        assert good == (len(edges) == 0)
+        assert np.array_equal(np.sort(labelled, axis=1), np.sort(Q, axis=1))
+        if good:
+            assert mesh.is_labelled(labelled)
+    shuffled = np.array([np.roll(q, k) for k, q in enumerate(mesh.grid_quads(3, 4))])
+    labelled, edges = singular.seam(shuffled)
+    assert len(edges) == 0 and mesh.is_labelled(labelled)
+
+
+@pytest.mark.parametrize(
+    "build", [singular.vertex, singular.polar_cap, lambda a, b: singular.moebius_strip(a, b)]
+)
+def test_counts_out_of_range_are_refused(build):
+    for bad in ((2, 3), (6, 0), (5.5, 2)):
+        with pytest.raises(ValueError, match="whole number"):
+            build(*bad)
+
+
+# --- degrees of freedom -------------------------------------------------------------------
+
+
+def test_the_jacobian_is_the_derivative():
+    rng = np.random.default_rng(2)
+    V, Q = surfaces.freeform_patch(3, 2)
+    move = rng.normal(size=V.shape)
+    ahead, back = (np.log(measure.ratios(V + h * move, Q)).T.ravel() for h in (1e-6, -1e-6))
+    assert np.allclose(freedom.jacobian(V, Q) @ move.ravel(), (ahead - back) / 2e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("m, n", [(1, 1), (4, 4), (3, 7)])
+def test_grids_have_full_rank_flat_or_not(m, n):
+    V, Q = conformal.quads(conformal.sheared_grid(np.pi / 2, np.pi / 2, m, n))
+    bent = V + 0.1 * np.random.default_rng(1).normal(size=V.shape)
+    for W in (V, bent):
+        found = freedom.count(W, Q)
+        assert found.rank == found.equations == 2 * m * n and found.gap > 1e-3
+        assert found.free == 3 * (m + 1) * (n + 1) - 2 * m * n
+
+
+def torus(m, n):
+    """A bumpy torus of m x n quads, closed both ways."""
+    i, j = (x.ravel() for x in np.mgrid[:m, :n])
+    a, b = 2 * np.pi * i / m, 2 * np.pi * j / n
+    r = 2 + (0.8 + 0.1 * np.cos(3 * a + b)) * np.cos(b)
+    V = np.stack([r * np.cos(a), r * np.sin(a), np.sin(b)], axis=1)
+    index = (i * n + (j + 1) % n, i * n + j)
+    right = (i + 1) % m
+    return V, np.stack([*index, right * n + j, right * n + (j + 1) % n], axis=1)
+
+
+def test_ring_meshes_webs_and_tori_have_full_rank():
+    nets = [mesh.polygon_rings(6, 3)[:2], singular.polar_cap(7, 3)[:2]]
+    nets.append(loxodrome.web(surfaces.sphere_profile(), 1.2, 1.0, 10, 6)[:2])
+    nets.append(torus(8, 6))
+    for V, Q in nets:
+        assert freedom.count(V, Q).rank == 2 * len(Q)
+    assert freedom.count(V, Q).free == len(V)  # closed: as many vertices as faces
+
+
+def test_a_fixed_boundary_costs_rank_where_the_net_is_flat():
+    m = 6
+    rim = mesh.boundary_loops(mesh.grid_quads(m, m))[0]
+    V, Q = conformal.quads(conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, m, m))
+    flat = freedom.count(V, Q, rim)
+    assert (flat.unknowns, flat.rank, flat.free) == (3 * 25, 2 * 25, 25)
+    mask = np.isin(np.arange(len(V)), rim)
+    assert freedom.count(V, Q, mask) == flat
+    roof = freedom.count(*surfaces.freeform_patch(m, m), rim)
+    assert (roof.rank, roof.free) == (72, 3)
+
+
+def test_large_meshes_are_refused():
+    with pytest.raises(ValueError, match="1225 faces: at most 1200"):
+        freedom.count(*surfaces.freeform_patch(35, 35))
+
+
+def test_one_curve_can_be_kept_and_the_whole_boundary_not():
+    V, Q = surfaces.freeform_patch(10, 10)
+    near = reference.mesh(V, Q)
+    index = np.arange(121).reshape(11, 11)
+    angles = 60 * DEGREE, 45 * DEGREE
+    for stay in (index[0], index[5], index[:, 5]):
+        net = solver.optimize(V, Q, *angles, reference=near, fixed=stay)
+        assert net.converged and np.array_equal(net.V[stay], V[stay])
+        assert measure.quality(net.V, Q).flips == 0
+    failed = solver.optimize(V, Q, *angles, reference=near, fixed="boundary", iterations=20)
+    assert not failed.converged
+
+
+def test_a_heavier_boundary_weight_keeps_the_boundary():
+    V, Q = surfaces.freeform_patch(10, 10)
+    near, rim = reference.mesh(V, Q), mesh.boundary_loops(Q)[0]
+    off = []
+    for weight in (0.0, 0.03):
+        options = {"reference": near, "weights": Weights(boundary=weight)}
+        net = solver.optimize(V, Q, 75 * DEGREE, 75 * DEGREE, **options)
+        assert net.converged
+        off.append(np.linalg.norm(near.boundary(net.V[rim])[0] - net.V[rim], axis=1).mean())
+    assert off[1] < off[0] / 4
+
+
+def test_half_turns_keep_any_angles_and_mirrors_only_right_ones():
+    V, Q = beyond_freedom.vault(8)
+    turned = solver.optimize(V, Q, 60 * DEGREE, 45 * DEGREE)
+    assert turned.converged
+    assert np.abs(turned.V[::-1] * [-1, -1, 1] - turned.V).max() < 1e-9
+    u, v = np.meshgrid(*2 * [np.linspace(-1, 1, 9)], indexing="ij")
+    W = np.stack([u, v + 0.1 * u**2, 0.4 * np.cos(u) - 0.2 * v**2 + 0.1 * v**3], axis=-1)
+
+    def asymmetry(theta, theta0):
+        net = solver.optimize(W.reshape(-1, 3), Q, theta * DEGREE, theta0 * DEGREE)
+        assert net.converged
+        grid = net.V.reshape(9, 9, 3)
+        return np.abs(grid[::-1] * [-1, 1, 1] - grid).max()
+
+    assert asymmetry(60, 90) < 1e-9
+    assert asymmetry(60, 60) > 0.1
+
+
+# --- angles at vertices -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("unit", [False, True])
+def test_star_angles_of_an_affine_grid_are_those_of_its_faces(unit):
+    z = conformal.sheared_grid(70 * DEGREE, 40 * DEGREE, 4, 3, direction=0.3 + 1j)
+    star = measure.star_angles(*conformal.quads(z), unit)
+    assert star.vertex.tolist() == [5, 6, 9, 10, 13, 14]
+    assert np.allclose(star.theta, 70 * DEGREE, atol=1e-14)
+    assert np.allclose(star.theta0, 40 * DEGREE, atol=1e-14)
+
+
+def test_star_angles_of_squares_and_exponentials_in_closed_form():
+    z = conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, 5, 5, origin=1, edge=0.3)
+    star = measure.star_angles(*conformal.quads(z**2))
+    assert np.allclose(star.theta, 60 * DEGREE, atol=1e-12)
+    assert np.allclose(star.theta0, 45 * DEGREE, atol=1e-12)
+    u, v = z[1, 0] - z[0, 0], z[0, 1] - z[0, 0]
+    for unit, half in ((False, 1), (True, 2)):
+        star = measure.star_angles(*conformal.quads(np.exp(z)), unit)
+        angle0 = np.angle(np.sinh(v / half) / np.sinh(u / half))
+        angle = np.angle(np.sinh((u + v) / half) / np.sinh((u - v) / half))
+        assert np.allclose(star.theta0, angle0, atol=1e-12)
+        assert np.allclose(star.theta, angle, atol=1e-12)
+    assert abs(angle0 - 45 * DEGREE) > 1e-4
+
+
+def test_star_angles_do_not_depend_on_half_turns_or_on_the_order_of_faces():
+    V, Q = surfaces.freeform_patch(5, 4)
+    star = measure.star_angles(V, Q)
+    other = np.where(np.arange(len(Q))[:, None] % 3 == 0, np.roll(Q, 2, axis=1), Q)[::-1]
+    for one, two in zip(star, measure.star_angles(V, other), strict=True):
+        assert np.array_equal(one, two)
+    turned = measure.star_angles(V, np.roll(Q, 1, axis=1))
+    assert np.allclose(turned.theta + star.theta, np.pi)
+    assert np.allclose(turned.theta0 + star.theta0, np.pi)
+    with pytest.raises(ValueError, match=r"mesh\.label"):
+        measure.star_angles(V, np.concatenate([np.roll(Q[:1], 1, axis=1), Q[1:]]))
+
+
+def test_star_angles_leave_out_the_rim_and_singular_vertices():
+    V, Q = singular.vertex(6, 3)
+    star = measure.star_angles(V, mesh.label(Q))
+    rim = mesh.boundary_loops(Q)[0]
+    assert len(star.vertex) == len(V) - len(rim) - 1 and 0 not in star.vertex
+    one = measure.star_angles(*conformal.quads(np.array([[0, 1j], [1, 1 + 1j]])))
+    assert one.vertex.size == one.theta.size == one.theta0.size == 0
+
+
+def test_star_angles_come_with_the_square_of_the_size():
+    found = beyond_star.nets(sizes=(8, 16, 32))
+    for unit in (False, True):
+        rows = beyond_star.table(found, 60 * DEGREE, 45 * DEGREE, unit)
+        for name in ("exp", "inverse", "sphere", "roof"):
+            first, second, third = rows[name][:, 1]
+            assert 3.3 < first / second < 4.5 and 3.5 < second / third < 4.2
+    assert beyond_star.table(found, 60 * DEGREE, 45 * DEGREE)["z2"].max() < 1e-10
+
+
+# --- drawings -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("module", [beyond_rho, beyond_labels, beyond_freedom, beyond_star])
+def test_drawings_show_exact_nets(module):
+    drawing = module.draw()
+    plt.close(drawing.figure)
+    assert drawing.function == f"{module.__name__}.draw"
+    assert drawing.name == module.__name__.rpartition(".")[2]
+    assert drawing.nets and max(publish.deviations(drawing.nets)) < 1e-10
+    for V, Q, *_ in drawing.nets:
+        assert len(Q) == 1 or measure.quality(V, Q).flips == 0
+    claims = drawing.claims
+    if module is beyond_freedom:
+        assert [claims[f"{k} converged"] for k in "ABCDEF"] == [True] * 5 + [False]
+    if module is beyond_labels:
+        refused = [k for k, text in claims.items() if k[0] in "ABC" and text != "labelled"]
+        assert [k[:2] for k in sorted(refused)] == ["A0", "A2", "A4", "B0", "B2", "B4", "C3", "C5"]
+    if module is beyond_rho:
+        assert claims["cross ratio"] == -1
+
+
+@pytest.mark.parametrize("theta, theta0", [(60, 45), (90, 90), (120, 90), (20, 160)])
+def test_exploring_draws_the_asked_angles(theta, theta0):
+    figure = beyond_rho.explore(theta, theta0)
+    words = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)
+    plt.close(figure)
+    assert rf"\theta={theta:.1f}\degree" in words and rf"\theta_0={theta0:.1f}\degree" in words
+    with pytest.raises(ValueError, match="theta0"):
+        beyond_rho.explore(60, 180)

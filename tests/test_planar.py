@@ -1,0 +1,347 @@
+"""`planar`, `outline` and `exactness` against `measure`, known nets, dense ranks and series."""
+
+import time
+
+import numpy as np
+import pytest
+import sympy
+
+from inetlib import conformal, exactness, measure, mesh, outline, planar
+from inetlib.drawings import beyond_planar
+
+ANGLES = [(90, 90), (60, 60), (60, 45), (100, 40)]
+T, T0 = np.radians(60), np.radians(45)
+CIRCLE = np.exp(2j * np.pi * np.arange(90) / 90)
+
+
+def strip(m, n):
+    """A closed strip of m x n quads, vertex (i, j) numbered i (n + 1) + j."""
+    Q = mesh.grid_quads(m, n)
+    return Q % (m * (n + 1))
+
+
+def ring(m, n, ratio):
+    """Concentric m-gons, from radius 1 on by powers of the complex ratio."""
+    i, j = np.meshgrid(np.arange(m), np.arange(n + 1), indexing="ij")
+    return (np.exp(2j * np.pi * i / m) * ratio**j).ravel()
+
+
+def require_exact(net, Q, degrees):
+    """The judge: both angles of every face, orientation, the equations themselves."""
+    found = np.degrees(measure.angles(net.V, Q))
+    assert np.abs(found - np.reshape(degrees, (2, 1))).max() < 1e-9
+    assert measure.quality(net.V, Q).flips == 0
+    assert not net.V[:, 2].any()
+    z = net.V[:, 0] + 1j * net.V[:, 1]
+    v1, v2, v3, v4 = z[Q].T
+    assert ((np.conj(v3 - v1) * (v4 - v2)).imag > 0).all()
+    lam, _ = measure.ratios(net.V, Q)
+    K = lam[0] * np.exp(1j * np.radians(degrees[0]))
+    assert np.abs(v4 - v2 - K * (v3 - v1)).max() < 1e-12 * np.abs(z).max()
+    assert net.residual < 1e-11
+    return z
+
+
+# --- nets ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_a_grid_through_five_handles(degrees):
+    Q = mesh.grid_quads(50, 50)
+    z = conformal.sheared_grid(*np.radians(degrees), 50, 50).ravel()
+    held = [0, 50, 50 * 51, 51 * 51 - 1, 51 * 25 + 25]
+    points = z[held] * (1 + 0.004j * np.abs(z[held]))
+    net = conformal.planar_net(Q, *np.radians(degrees), handles=(held, points))
+    found = require_exact(net, Q, degrees)
+    assert np.abs(found[held] - points).max() < 1e-12 * np.abs(points).max()
+    assert len(net.flipped) == len(net.wound) == 0
+    assert net.freedom == 101
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_a_hexagon_with_rings_through_six_handles_or_near_a_start(degrees):
+    V, Q, _ = mesh.polygon_rings(6, 8)
+    rim = max(mesh.boundary_loops(Q), key=len)
+    held = rim[:: len(rim) // 6]
+    for given in ({"handles": (held, V[held])}, {"start": V}):
+        net = planar.planar_net(Q, *np.radians(degrees), **given)
+        require_exact(net, Q, degrees)
+        assert len(net.flipped) == len(net.wound) == 0
+        if "handles" in given:
+            np.testing.assert_allclose(net.V[held], V[held], atol=1e-12)
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_an_annulus_near_a_start(degrees):
+    Q = strip(40, 10)
+    step = abs(planar_ratio(40, *np.radians(degrees)))
+    z = ring(40, 10, step)
+    net = planar.planar_net(Q, *np.radians(degrees), start=z.real + 1.1j * z.imag)
+    require_exact(net, Q, degrees)
+    assert len(net.flipped) == len(net.wound) == 0
+
+
+def planar_ratio(m, theta, theta0):
+    """The ratio of rings of the strip that turns by 2 pi / m: (u + v) = K (u - v) in powers."""
+    K, w = planar.factor_k(theta, theta0), np.exp(2j * np.pi / m)
+    return (1 + K * w) / (w + K)
+
+
+def test_round_annuli_close_at_all_angles_but_with_ratios_of_their_own():
+    for degrees in ANGLES:
+        z = ring(40, 10, planar_ratio(40, *np.radians(degrees)))
+        net = planar.planar_net(strip(40, 10), *np.radians(degrees), start=z, smooth=0)
+        np.testing.assert_allclose(require_exact(net, strip(40, 10), degrees), z, atol=1e-12)
+
+
+def test_known_nets_are_recovered_from_handles():
+    m, n = 12, 9
+    Q, z = mesh.grid_quads(m, n), conformal.sheared_grid(T, T0, m, n, 1 + 2j, 0.1)
+    straight = planar.planar_net(Q, T, T0, ([7, 95], z.ravel()[[7, 95]]))
+    np.testing.assert_allclose(straight.V, conformal.quads(z)[0], atol=1e-11)
+    # z^2 is given back by as many of its vertices as there are freedoms, along the rim
+    w, rim = z**2, mesh.boundary_loops(Q)[0]
+    held = np.append(rim[::2], rim[1])
+    square = planar.planar_net(Q, T, T0, (held, w.ravel()[held]))
+    assert len(held) == square.freedom
+    np.testing.assert_allclose(square.V, conformal.quads(w)[0], atol=1e-11)
+    every = np.arange(w.size)  # more handles than freedoms, but they agree
+    np.testing.assert_allclose(
+        planar.planar_net(Q, T, T0, (every, w.ravel())).V, conformal.quads(w)[0], atol=1e-14
+    )
+
+
+def test_the_smoothest_net_has_the_least_energy_among_its_neighbours():
+    Q, count = mesh.grid_quads(5, 4), 30
+    A = planar.equations(Q, planar.factor_k(T, T0)).toarray()
+    held, points = [0, 4, 25, 29], np.array([0, 0.5 + 0.3j, 1, 1.7 + 0.4j])
+    net = planar.planar_net(Q, T, T0, (held, points))
+    z = net.V[:, 0] + 1j * net.V[:, 1]
+    rows = np.concatenate([A, np.eye(count)[held]])
+    null = np.linalg.svd(rows)[2][np.linalg.matrix_rank(rows) :].conj().T
+    grid = z.reshape(6, 5)
+
+    def energy(z):
+        twist = z[1:, 1:] - z[1:, :-1] - z[:-1, 1:] + z[:-1, :-1]
+        parts = np.diff(z, 2, axis=0), np.diff(z, 2, axis=1), np.sqrt(2) * twist
+        return sum((np.abs(part) ** 2).sum() for part in parts)
+
+    assert null.shape[1] == 10 - 4
+    for direction in null.T:
+        for step in (1e-4, -1e-4, 1e-4j):
+            assert energy(grid + step * direction.reshape(6, 5)) > energy(grid)
+
+
+def test_a_start_gives_the_orthogonal_projection():
+    V, Q, _ = mesh.polygon_rings(6, 3)
+    net = planar.planar_net(Q, T, T0, start=V, smooth=0)
+    A = planar.equations(Q, planar.factor_k(T, T0)).toarray()
+    z = V[:, 0] + 1j * V[:, 1]
+    nearest = z - np.linalg.pinv(A) @ (A @ z)
+    np.testing.assert_allclose(net.V[:, 0] + 1j * net.V[:, 1], nearest, atol=1e-11)
+
+
+def test_freedoms_are_the_dimension_of_the_null_space():
+    hexagon = mesh.polygon_rings(6, 8)[1]
+    for Q, wanted in ((hexagon, 54), (mesh.grid_quads(7, 4), 12), (strip(12, 3), 12)):
+        for degrees in ANGLES:
+            A = planar.equations(Q, planar.factor_k(*np.radians(degrees))).toarray()
+            assert A.shape[1] - np.linalg.matrix_rank(A) == wanted
+            assert A.shape[1] - len(Q) == wanted
+
+
+def test_ten_thousand_quads_take_a_moment():
+    Q = mesh.grid_quads(100, 100)
+    z = conformal.sheared_grid(T, T0, 100, 100).ravel()
+    before = time.perf_counter()
+    held = [0, 100, 101 * 100, 101 * 101 - 1]
+    net = planar.planar_net(Q, T, T0, (held, z[held] * (1 + 1e-3j * np.abs(z[held]))))
+    assert time.perf_counter() - before < 5
+    require_exact(net, Q, (60, 45))
+
+
+# --- outlines -----------------------------------------------------------------------------
+
+
+def test_an_outline_is_followed_and_the_distance_is_true():
+    V, Q, _ = mesh.polygon_rings(6, 8)
+    V = V / np.abs(V).max()
+    ellipse = CIRCLE.real + 0.9j * CIRCLE.imag
+    net = planar.planar_net(Q, np.pi / 2, np.pi / 2, boundary=ellipse, start=V)
+    require_exact(net, Q, (90, 90))
+    assert net.distance < 0.01 and "boundary off by" in net.message
+    rim = max(mesh.boundary_loops(Q), key=len)
+    dense = CIRCLE[:, None] * (1 - np.linspace(0, 1, 200)) + np.roll(CIRCLE, -1)[:, None] * (
+        np.linspace(0, 1, 200)
+    )
+    dense = (dense.real + 0.9j * dense.imag).ravel()
+    z = net.V[rim, 0] + 1j * net.V[rim, 1]
+    apart = np.abs(z[:, None] - dense).min(axis=1).max()
+    assert net.distance == pytest.approx(apart, abs=1e-4)
+
+
+def test_an_outline_that_a_net_has_is_met():
+    flat = conformal.sheared_grid(T, T0, 12, 8, 1, 0.05)
+    z = flat**2
+    ends = flat[[0, 12, 12, 0], [0, 0, 8, 8]]
+    t = np.arange(200) / 200
+    rim = (ends[:, None] * (1 - t) + np.roll(ends, -1)[:, None] * t).ravel() ** 2
+    corners = [0, 8, 12 * 9, 13 * 9 - 1]
+    Q = mesh.grid_quads(12, 8)
+    for given, most in (
+        ({"handles": (corners, z.ravel()[corners])}, 1e-4),
+        ({"start": z.ravel() * 1.01}, 1e-3),
+    ):
+        net = planar.planar_net(Q, T, T0, boundary=rim[::-1], smooth=1e-6, **given)
+        assert net.distance < most
+        require_exact(net, Q, (60, 45))
+    assert planar.planar_net(Q, T, T0, boundary=rim).distance < 0.02
+
+
+def test_two_outlines_of_an_annulus_and_a_function():
+    z = ring(40, 10, planar_ratio(40, T, T0))
+    loops = [np.arange(40) * 11, np.arange(40) * 11 + 10]
+    pairs = [(loops[0], lambda t: np.exp(2j * np.pi * t)), (loops[1], abs(z[10]) * CIRCLE)]
+    net = planar.planar_net(strip(40, 10), T, T0, boundary=pairs, start=1.1 * z)
+    require_exact(net, strip(40, 10), (60, 45))
+    assert net.distance < 2e-3
+
+
+def test_closest_points_and_spreads():
+    square = outline.closed([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])
+    feet, tangents = outline.closest(np.array([0.3 - 1j, 2 + 0.25j, 3 + 3j]), square)
+    np.testing.assert_allclose(feet, [0.3, 1 + 0.25j, 1 + 1j])
+    np.testing.assert_allclose(tangents[:2], [1, 1j])
+    np.testing.assert_allclose(outline.spread(square, 8)[:4], [0, 0.5, 1, 1 + 0.5j])
+    np.testing.assert_array_equal(outline.closed(square[::-1]), square[::-1][::-1])
+
+
+def test_crossing_faces_and_double_windings_are_found():
+    z = np.array([0, 1j, 1, 1 + 1j])  # grid_quads(1, 1): v1 = 1, v2 = 0, v3 = 2, v4 = 3
+    Q = mesh.grid_quads(1, 1)
+    assert not len(planar.faults(z, Q)[0])
+    assert len(planar.faults(z[[0, 1, 3, 2]], Q)[0]) == 1
+    double = conformal.sheared_grid(T, T, 4, 4)
+    double = (double - double[2, 2]) ** 2
+    np.testing.assert_array_equal(planar.faults(double.ravel(), mesh.grid_quads(4, 4))[1], [12])
+
+
+def test_the_nets_of_the_drawing():
+    leaf, Q, _, _ = beyond_planar.leaf()
+    assert leaf.distance < 1e-3
+    require_exact(leaf, Q, (60, 60))
+    for net, Q, degrees in (
+        (*beyond_planar.annulus()[:2], (60, 60)),
+        (*beyond_planar.hexagon()[:2], (60, 45)),
+    ):
+        require_exact(net, Q, degrees)
+        assert len(net.flipped) == len(net.wound) == 0
+    with pytest.raises(ValueError, match="multiple of 4"):
+        beyond_planar.annulus(around=30)
+
+
+# --- bad input ----------------------------------------------------------------------------
+
+GRID = mesh.grid_quads(4, 3)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({}, "0 handles do not fix"),
+        ({"handles": ([0], [1j])}, "1 handles do not fix"),
+        ({"handles": ([0, 0], [1, 2])}, "vertex 0 twice"),
+        ({"handles": ([0, 20], [1, 2])}, "name vertex 20: 0 to 19"),
+        ({"handles": ([0, -1], [1, 2])}, "name vertex -1"),
+        ({"handles": ([0.5, 1], [1, 2])}, "list of vertex numbers"),
+        ({"handles": ([0, 1], [1, np.nan])}, "point 1 is not finite"),
+        ({"handles": ([0, 1], [1, 2, 3])}, "2 points are wanted, not 3"),
+        ({"handles": ([0, 1], ["a", "b"])}, "numbers are wanted"),
+        ({"handles": [0, 1, 2]}, "handles has 3 parts"),
+        ({"handles": ([0, 1], [3, 3])}, "coincide"),
+        ({"handles": (range(20), np.arange(20) ** 2 + 1j)}, "no net with these angles"),
+        ({"start": np.zeros((20, 3))}, "coincide"),
+        ({"start": np.zeros((19, 3))}, "20 points are wanted"),
+        ({"start": np.zeros((20, 4))}, "shape"),
+        ({"boundary": [0, 1]}, "at least three"),
+        ({"boundary": [(0, 0), (1, 0)]}, "at least three"),
+        ({"boundary": [([0, 30], CIRCLE)]}, "vertex 30"),
+        ({"boundary": []}, "0 handles do not fix"),
+        ({"boundary": [0, 1, np.inf]}, "not finite"),
+        ({"handles": ([0, 1], [0, 1]), "smooth": 0}, "smooth = 0"),
+        ({"handles": ([0, 1], [0, 1]), "smooth": -1}, "smooth = -1"),
+    ],
+)
+def test_bad_input_is_named(given, words):
+    with pytest.raises(ValueError, match=words):
+        planar.planar_net(GRID, T, T0, **given)
+
+
+@pytest.mark.parametrize(
+    ("Q", "theta", "words"),
+    [
+        (GRID, 60, "radians"),
+        (GRID, np.nan, "radians"),
+        (GRID, [T, T], "one number"),
+        (GRID[:, :3], T, "quads are wanted"),
+        (GRID[:0], T, "no faces"),
+        (np.concatenate([GRID[:1], np.roll(GRID[1:], 1, 1)]), T, "mesh.label"),
+        (np.concatenate([GRID, GRID + 20]), T, "2 separate parts"),
+        (GRID + 1, T, "vertex 0 belongs to no face"),
+    ],
+)
+def test_bad_meshes_and_angles_are_named(Q, theta, words):
+    with pytest.raises(ValueError, match=words):
+        planar.planar_net(Q, theta, T0, handles=([1, 2], [0, 1]))
+
+
+def test_a_closed_mesh_collapses():
+    i, j = np.divmod(np.arange(30), 5)
+    Q = np.stack([5 * i + (j + 1) % 5, 5 * i + j, 5 * ((i + 1) % 6) + j], 1)
+    Q = np.concatenate([Q, (5 * ((i + 1) % 6) + (j + 1) % 5)[:, None]], 1)
+    with pytest.raises(ValueError, match="collapses"):
+        planar.planar_net(Q, T, T0, start=np.exp(1j * np.arange(30)))
+
+
+# --- exactness of conformal images --------------------------------------------------------
+
+Z = sympy.Symbol("z")
+MAPS = {
+    "z^2": (Z**2, 0),
+    "exp": (sympy.exp(Z), 1),
+    "sin": (sympy.sin(Z), -1),
+    "1/z": (1 / Z, None),
+    "z^3": (Z**3, None),
+    "tan": (sympy.tan(Z), None),
+}
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_the_leading_error_is_right_and_the_rest_of_fourth_order(name):
+    f, wanted = MAPS[name]
+    z, u = 0.7 + 0.4j, 0.2 + 0.05j
+    v = u * conformal.sheared_grid(T, T0, 1, 1)[0, 1]
+    call, first, third = (sympy.lambdify(Z, f.diff(Z, k), "numpy") for k in (0, 1, 3))
+    rest = []
+    for h in (1, 1 / 2, 1 / 4):
+        found = exactness.cell_errors(call, z, h * u, h * v)
+        said = exactness.leading_errors(first(z), third(z), h * u, h * v)
+        rest.append(np.abs(np.subtract(found, said)))
+        assert np.all(np.abs(found) > 1e-4 * h**2) or name == "z^2"
+    if name == "z^2":
+        assert np.max(rest) < 1e-13
+    else:
+        order = np.log2(np.array(rest)[:-1] / np.array(rest)[1:])
+        assert np.abs(order[:, 0] - 4).max() < 0.15
+        assert order[:, 1].min() > 3.85  # 6 for 1/z
+    kappa = exactness.kappa(f, Z)
+    assert kappa == wanted if wanted is not None else kappa.has(Z)
+
+
+def test_bad_cells_and_maps():
+    with pytest.raises(ValueError, match="not parallel"):
+        exactness.cell_errors(np.exp, 0, 1, 2)
+    with pytest.raises(ValueError, match="not conformal"):
+        exactness.leading_errors(0, 1, 1, 1j)
+    with pytest.raises(ValueError, match="does not depend"):
+        exactness.kappa(sympy.Integer(3), Z)
