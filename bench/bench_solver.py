@@ -104,10 +104,10 @@ def solved(V, Q, **options):
 
 
 def baseline(V, Q, setting):
-    return paper(V, Q, setting, "paper, spsolve")
+    return paper(V, Q, setting, "paper")
 
 
-def paper(V, Q, setting, formulation="paper"):
+def paper(V, Q, setting, formulation="paper, splu"):
     count = FULL if len(Q) <= PAPER_FULL else 2
     found = solved(V, Q, formulation=formulation, via="jump", iterations=count, **setting)
     return found | {"whole": found["whole"] + (FULL - count) * found["step"]}

@@ -118,7 +118,7 @@ def test_the_start_is_seen_by_the_judge(patch):
 
 
 def test_the_paper_formulation_runs_from_the_same_start():
-    V, Q, found = fig12.nets("paper", m=8, n=8)
+    V, Q, found = fig12.nets("paper, splu", m=8, n=8)
     assert {k: len(r.history) - 1 for k, r in found.items()} == fig12.ITERATIONS
     assert all(r.history[-1].flips == 0 and r.history[-1].residual < 1e-8 for r in found.values())
     for result in found.values():

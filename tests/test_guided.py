@@ -66,7 +66,7 @@ def patch(n=8):
 
 def test_guided_projection_reaches_residuals_like_the_printed_ones():
     V, Q = patch()
-    found = solver.optimize(V, Q, formulation="paper")
+    found = solver.optimize(V, Q, formulation="paper, splu")
     assert len(found.history) - 1 == 17
     residuals = [step.residual for step in found.history[1:]]
     assert residuals[-1] < 1e-11 and residuals[-1] < 1e-3 * residuals[0]
@@ -92,9 +92,18 @@ def test_the_step_does_not_depend_on_the_scale_of_the_mesh():
     np.testing.assert_allclose(big.V / 1000, one.V, atol=1e-9)
 
 
+def test_both_linear_solvers_make_the_same_steps():
+    V, Q = patch(6)
+    one, two = (
+        solver.optimize(V, Q, theta=RIGHT, formulation=formulation, iterations=5)
+        for formulation in ("paper", "paper, splu")
+    )
+    np.testing.assert_allclose(one.V, two.V, atol=1e-9)
+
+
 def test_fixed_vertices_stay_in_both_formulations():
     V, Q = patch(6)
-    for formulation in ("ratio", "paper"):
+    for formulation in ("ratio", "paper", "paper, splu"):
         found = solver.optimize(V, Q, theta=RIGHT, formulation=formulation, fixed=[0, 6, 20])
         np.testing.assert_array_equal(found.V[[0, 6, 20]], V[[0, 6, 20]])
         assert np.abs(found.V - V).max() > 1e-3

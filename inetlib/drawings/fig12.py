@@ -35,7 +35,7 @@ def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
     near = reference.mesh(V, Q)
     found = {}
     for letter, angles in SETTINGS.items():
-        way = {"iterations": ITERATIONS[letter], "via": "jump"} if formulation == "paper" else {}
+        way = {"iterations": ITERATIONS[letter], "via": "jump"} if formulation != "ratio" else {}
         found[letter] = solver.optimize(
             V,
             Q,

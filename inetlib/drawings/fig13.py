@@ -49,7 +49,7 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
             weights=weights,
             polygons=[polygon],
             formulation=formulation,
-            iterations=ITERATIONS[letter] if formulation == "paper" else None,
+            iterations=ITERATIONS[letter] if formulation != "ratio" else None,
         )
     return V, Q, polygon, found
 

@@ -24,8 +24,8 @@ HEADER = [
     *("max dtheta", "max dtheta0", "mean dtheta", "mean dtheta0", "flips", "area ratio"),
 ]
 VARIANTS = {  # formulation and weights
-    "paper's, printed weights": ("paper", PAPER),
-    "paper's, small weights": ("paper", _optimised.WEIGHTS),
+    "paper's, printed weights": ("paper, splu", PAPER),
+    "paper's, small weights": ("paper, splu", _optimised.WEIGHTS),
     "ratios": ("ratio", _optimised.WEIGHTS),
 }
 NOISE = 1e-20  # residuals below are rounding errors
