@@ -33,7 +33,8 @@ def main():
         )
     print("installing the packages of constraints.txt into .venv ...", flush=True)
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    if subprocess.run([*pip, "-c", "constraints.txt", "-e", ".[view,test]"], cwd=ROOT).returncode:
+    project = ["-c", "constraints.txt", "-e", ".[view,cad,test]"]
+    if subprocess.run([*pip, *project], cwd=ROOT).returncode:
         return "the packages could not be installed: see pip's message above"
     (VENV / "ready").touch()
     return 0

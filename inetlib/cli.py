@@ -1,0 +1,277 @@
+"""The command line `inet`: measure, cover, web, optimize, figures.
+
+Wrong input is found before the work begins and becomes one sentence on stderr; a file is
+written only after everything went well.
+
+Paper: Sec. 6 (command line; beyond the paper).
+"""
+
+import contextlib
+import functools
+import importlib.util
+import json
+import os
+import sys
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from . import (
+    design,
+    examples,
+    io,
+    loxodrome,
+    mesh,
+    options,
+    paths,
+    reference,
+    report,
+    solver,
+    surfaces,
+)
+from .adjacency import boundary_loops
+
+DONE, NOT_FOUND, WRONG, STOPPED = 0, 1, 2, 130
+PROFILES = {
+    "sphere": surfaces.sphere_profile,
+    "torus": surfaces.torus_profile,
+    "catenoid": surfaces.catenoid_profile,
+    "vase": surfaces.vase_profile,
+    "cone": lambda: surfaces.cone_profile(np.radians(30)),
+}
+SURFACES = {
+    "roof": examples.wavy_roof,
+    "saddle": examples.saddle_with_hole,
+    "shell": examples.hanging_shell,
+}
+ROOT = Path(__file__).resolve().parent.parent
+
+
+class Off(Exception):
+    """No net with the angles was found; the sentence says what was done instead."""
+
+
+def main(arguments=None):
+    """Run `inet` with a list of arguments, or those of the process: the exit code.
+
+    0 done, 1 no net with these angles was found, 2 wrong input, 130 stopped by Ctrl-C.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    try:
+        given = options.parser().parse_args(arguments)
+    except SystemExit as end:  # help, the version, or a mistake that was already told
+        return end.code
+    commands = {
+        "measure": _measure,
+        "cover": _cover,
+        "web": _web,
+        "optimize": _optimize,
+        "figures": _figures,
+    }
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            code = commands[given.command](given)
+        sys.stdout.flush()
+        return code
+    except KeyboardInterrupt:
+        figures = given.command == "figures"
+        return _tell("stopped" + ", nothing was written" * (not figures), STOPPED)
+    except BrokenPipeError:  # the reader of our output went away, for example `head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except Off as words:
+        return _tell(words, NOT_FOUND)
+    except (ValueError, OSError, ImportError, RuntimeError, ArithmeticError) as error:
+        return _tell(_sentence(error), WRONG)
+    except MemoryError:
+        return _tell("there is not enough memory for this: ask for fewer quads", WRONG)
+
+
+def _tell(words, code):
+    print("inet:", " ".join(str(words).split()), file=sys.stderr)
+    return code
+
+
+def _sentence(error):
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error) or type(error).__name__
+
+
+# --- the commands -------------------------------------------------------------------------
+
+
+def _measure(given):
+    V, Q, polygons, notes = paths.read_net(given.net, must_label=False)
+    notes += paths.turned(V, Q, given.theta, given.theta0)
+    numbers = report.net(V, Q, polygons, _wanted(given))
+    _say(given, {"file": given.net, "labelled": mesh.is_labelled(Q), **numbers, "notes": notes})
+    return DONE
+
+
+def _cover(given):
+    paths.check_output(given.output, given.force, given.curves)
+    if given.surface in SURFACES:
+        (V, F), repaired = SURFACES[given.surface](), []
+    else:
+        V, F, repaired = io.surface(given.surface)
+    found = design.cover(
+        V,
+        F,
+        *np.radians([given.theta, given.theta0]),
+        count=given.quads,
+        size=given.size,
+        direction=np.radians(given.direction),
+        tolerance=np.radians(given.tolerance),
+        progress=_progress(given),
+    )
+    numbers = found.report._asdict()
+    notes = _repairs(given.surface, [*repaired, *numbers.pop("repairs")])
+    for name in ("quads", "theta", "theta0", "max_deviation", "mean_deviation", "flips"):
+        del numbers[name]  # `report.net` says them in degrees
+    return _finish(given, found.V, found.Q, (), numbers, notes)
+
+
+def _web(given):
+    paths.check_output(given.output, given.force, given.curves)
+    known = PROFILES.get(given.profile)
+    profile = known() if known else paths.profile(_profile_file(given.profile))
+    angles = np.radians([given.theta, given.theta0])
+    net = loxodrome.web(profile, *angles, given.m, given.n, given.method)
+    io.write(
+        given.output,
+        net.V,
+        net.Q,
+        paths.curves(given.output, net.Q, given.curves),
+        force=given.force,
+    )
+    numbers = report.net(net.V, net.Q, (), _wanted(given))
+    rows = {"rows": net.rows, "quads_around": given.m, "message": net.message}
+    _say(given, {"file": given.output, **rows, **numbers, "notes": []})
+    return DONE
+
+
+def _profile_file(name):
+    if not Path(name).is_file():
+        known = ", ".join(PROFILES)
+        raise ValueError(f"--profile {name}: neither {known} nor a file that is there")
+    return name
+
+
+def _optimize(given):
+    paths.check_output(given.output, given.force, given.curves)
+    V, Q, polygons, notes = paths.read_net(given.net)
+    notes += paths.turned(V, Q, given.theta, given.theta0)
+    near = None
+    if given.reference is not None:
+        surface = io.surface(given.reference)
+        near = reference.mesh(surface.V, surface.F)
+        notes += _repairs(given.reference, surface.repaired)
+    rims = {frozenset(loop.tolist()) for loop in boundary_loops(Q)}
+    found = solver.optimize(
+        V,
+        Q,
+        *(None if x is None else np.radians(x) for x in (given.theta, given.theta0)),
+        given.lam,
+        given.mu,
+        reference=near,
+        on_surface=given.on_surface,
+        fixed=given.fixed,
+        polygons=[p for p in polygons if frozenset(np.asarray(p).tolist()) in rims],
+        via=given.via,
+        tolerance=np.radians(given.tolerance),
+        progress=_progress(given),
+    )
+    numbers = {
+        "converged": found.converged,
+        "message": found.message,
+        "steps": len(found.history) - 1,
+        "lam": found.lam,
+        "mu": found.mu,
+        "seconds": found.seconds,
+    }
+    return _finish(given, found.V, Q, polygons, numbers, notes)
+
+
+def _figures(given):
+    runner, folder = ROOT / "tools" / "redraw.py", ROOT / "notebooks"
+    if not (runner.is_file() and folder.is_dir()):
+        raise ValueError("figures: the notebooks are not here, run this in a clone of the project")
+    names = [stem for name in given.names for stem in _notebooks(folder, name)]
+    spec = importlib.util.spec_from_file_location("redraw", runner)
+    redraw = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(redraw)
+    if not _progress(given):
+        redraw.tqdm = functools.partial(redraw.tqdm, disable=True)
+    with contextlib.redirect_stdout(None if given.quiet else sys.stdout):
+        return redraw.main(list(dict.fromkeys(names)))
+
+
+def _notebooks(folder, name):
+    """The notebooks whose names begin so, or that draw the figure of this name."""
+    found = []
+    for path in sorted(folder.glob("*.ipynb")):
+        if path.stem.startswith(name) or name in _tags(path):
+            found.append(path.stem)
+    if not found:
+        raise ValueError(f"figures: no notebook begins with {name!r}, and none draws it")
+    return found
+
+
+def _tags(path):
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+    return {tag for cell in cells for tag in cell["metadata"].get("tags", [])}
+
+
+# --- after the work ------------------------------------------------------------
+
+
+def _repairs(path, sentences):
+    return [f"{path}: {sentence}" for sentence in dict.fromkeys(sentences)]
+
+
+def _finish(given, V, Q, polygons, numbers, notes):
+    """Write the net if it is good or to be kept, and say what there is to say: exit code."""
+    numbers = report.plain(numbers)
+    good = numbers["converged"]
+    written = good or given.keep
+    if written:
+        io.write(
+            given.output,
+            V,
+            Q,
+            paths.curves(given.output, Q, given.curves),
+            polygons,
+            force=given.force,
+        )
+    about = report.net(V, Q, polygons, _wanted(given))
+    _say(given, {"file": given.output if written else None, **numbers, **about, "notes": notes})
+    if not good:
+        what = "this net was written" if written else "nothing was written, --keep does it"
+        raise Off(f"{numbers['message']}; {what}")
+    return DONE
+
+
+def _say(given, numbers):
+    if given.json:
+        print(json.dumps(numbers, indent=2, allow_nan=False))
+    elif not given.quiet:
+        print(numbers["file"] or "not written")
+        if "message" in numbers and numbers.get("converged", True):
+            print(numbers["message"])
+        print(report.table(numbers))
+        if "covered" in numbers:
+            print(report.cover(numbers))
+        for note in numbers["notes"]:
+            print("note:", note)
+
+
+def _wanted(given):
+    return {name: getattr(given, name, None) for name in ("theta", "theta0", "lam", "mu")}
+
+
+def _progress(given):
+    return sys.stderr.isatty() and not given.quiet

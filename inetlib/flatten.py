@@ -1,0 +1,191 @@
+"""Conformal maps of triangle meshes to the plane: disks, and rings with their period.
+
+Points of the plane are complex numbers.  The map of a disk is the spectral relative of
+LSCM: of all maps it has the smallest conformal energy for the mean square radius of its
+boundary, so that no pair of vertices must be pinned and the scale varies little.  A ring
+is cut from one boundary to the other; the two banks of the cut differ by the period, and
+the two boundaries become parallel lines.
+
+Paper: Sec. 6.2 (beyond the paper).
+"""
+
+from typing import NamedTuple
+
+import igl
+import numpy as np
+from scipy.sparse import coo_array, csr_array, eye_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+
+from . import adjacency, linear
+
+ROUNDS = 100  # of the inverse iteration, at most; five are usual
+STILL = 1e-9  # a change of the map, of its size, that ends the iteration
+SAMPLES = 20000  # triangles that are looked at for overlaps
+
+
+class Flat(NamedTuple):
+    """A flattened surface, made by `flatten`; the area in the plane is that of the surface.
+
+    z (k,) complex, F (f, 3) triangles in the numbering of z, origin (k,) the vertex of the
+    surface each one is; period: complex, None for a disk.  Row f of F is triangle f of the
+    surface.  flips: flipped triangles; distortion (f,): longer / shorter half axis of the
+    ellipse that a circle becomes; scale (f,): length in the plane / length on the surface.
+    """
+
+    z: np.ndarray
+    F: np.ndarray
+    origin: np.ndarray
+    period: complex | None
+    flips: int
+    distortion: np.ndarray
+    scale: np.ndarray
+
+
+def flatten(V, F, loops):
+    """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
+
+    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk, and
+    runs around the hole of a ring.  ValueError if the flat surface overlaps itself.
+
+    Paper: Sec. 6.2 (beyond the paper).
+    """
+    if len(loops) == 1:
+        z, faces, origin, period = _disk(V, F, loops[0]), F, np.arange(len(V)), None
+    else:
+        z, faces, origin, period = _ring(V, F, loops)
+    flips, distortion, scale, area = _judge(V, F, z[faces])
+    grow = np.sqrt(area.sum() / np.sum(area * scale**2))
+    flat = Flat(z * grow, faces, origin, period, flips, distortion, scale * grow)
+    _refuse_overlap(flat)
+    return flat if period is None else flat._replace(period=period * grow)
+
+
+def _disk(V, F, loop):
+    z, energy = _lscm(V, F, loop)
+    count = len(V)
+    matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
+    inverse = linear.factor(matrix)
+    z = _unit_rim(z, loop)
+    for _ in range(ROUNDS):
+        load = np.zeros(count, dtype=complex)
+        load[loop] = z[loop]
+        x = inverse(np.concatenate([load.real, load.imag]))
+        before, z = z, _unit_rim(x[:count] + 1j * x[count:], loop)
+        if np.abs(z - before).max() < STILL * np.abs(z).max():
+            break
+    return z * np.exp(-0.5j * _twice_axis(z, F))
+
+
+def _twice_axis(z, F):
+    """Twice the angle of the longest direction of the flat triangles, 0 where there is none."""
+    a, b, c = z[F].T
+    area = np.imag(np.conj(b - a) * (c - a))
+    a, b, c = z[F].T - np.average((a + b + c) / 3, weights=area)
+    moment = np.average(a * a + b * b + c * c + a * b + b * c + c * a, weights=area)
+    size = np.average(np.abs(a) ** 2, weights=area)
+    return np.angle(moment) if abs(moment) > 1e-6 * size else 0.0
+
+
+def _lscm(V, F, loop):
+    """(z, energy): libigl's least squares conformal map and the matrix of its energy."""
+    first = loop[np.argmax(np.linalg.norm(V[loop] - V[loop].mean(axis=0), axis=1))]
+    second = loop[np.argmax(np.linalg.norm(V[loop] - V[first], axis=1))]
+    ends = np.array([[0.0, 0.0], [1.0, 0.0]])
+    uv, energy = igl.lscm(V, F, np.array([first, second]), ends)
+    return uv[:, 0] + 1j * uv[:, 1], csr_array(energy)
+
+
+def _unit_rim(z, loop):
+    z = z - z[loop].mean()
+    return z / np.linalg.norm(z[loop])
+
+
+# --- rings ----------------------------------------------------------------------------------
+
+
+def _ring(V, F, loops):
+    """(z, F, origin, period 1) of a ring, cut along a shortest path between its loops.
+
+    The loops become the lines Im z = 0 and Im z = h, with the h of least energy.
+    """
+    faces, origin, bank = _cut(F, _path(V, F, loops))
+    _, energy = _lscm(V[origin], faces, np.flatnonzero(bank))  # any pins: the energy is wanted
+    count, k = len(V), len(origin)
+    column = np.arange(2 * count)  # x and y of each vertex; -1 for what is zero
+    column[count + loops[1]] = count + loops[1][0]
+    column[count + loops[0]] = column[0] = -1
+    number = np.unique(column, return_inverse=True)[1] - 1
+    column = number[np.concatenate([origin, origin + count])]
+    row = np.flatnonzero(column >= 0)
+    merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
+    jump = np.concatenate([bank, np.zeros(k)])
+    x = merge @ linear.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
+    return x[:k] + bank + 1j * x[k:], faces, origin, 1.0 + 0j
+
+
+def _path(V, F, loops):
+    """The vertices of a shortest path along edges from the second loop to the first."""
+    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
+    length = np.linalg.norm(V[edges[:, 0]] - V[edges[:, 1]], axis=1)
+    ends = np.sort(edges, axis=1)
+    ends, index = np.unique(ends, axis=0, return_index=True)
+    graph = coo_array((length[index], tuple(ends.T)), shape=(len(V), len(V))).tocsr()
+    distance, parent, _ = dijkstra(
+        graph, directed=False, indices=loops[1], min_only=True, return_predecessors=True
+    )
+    path = [int(loops[0][np.argmin(distance[loops[0]])])]
+    while parent[path[-1]] >= 0:
+        path.append(int(parent[path[-1]]))
+    return np.array(path[::-1])
+
+
+def _cut(F, path):
+    """(faces, origin, bank) of the triangles cut along a path: bank marks its left copies."""
+    start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
+    after = np.roll(np.arange(F.size).reshape(-1, 3), -1, axis=1).ravel()
+    twin = adjacency.opposites(F)
+    step = np.full(F.max() + 1, -1)
+    step[path[:-1]] = path[1:]
+    left = step[start] == end
+    closed = left | (left[twin] & (twin >= 0))
+    half = np.flatnonzero((twin >= 0) & ~closed)
+    one = np.concatenate([half, after[half]])  # corners are numbered as the half-edges they start
+    two = np.concatenate([after[twin[half]], twin[half]])
+    graph = coo_array((np.ones(len(one)), (one, two)), shape=(F.size, F.size))
+    count, faces = connected_components(graph, directed=False)
+    origin = np.empty(count, dtype=np.int64)
+    origin[faces] = start
+    bank = np.zeros(count, dtype=bool)
+    bank[faces[left]] = bank[faces[after[left]]] = True
+    return faces.reshape(-1, 3).astype(np.int64), origin, bank
+
+
+# --- judging --------------------------------------------------------------------------------
+
+
+def _judge(V, F, corners):
+    """(flips, distortion (f,), scale (f,), area (f,)) of the triangles with `corners` (f, 3)."""
+    a, b, c = np.moveaxis(V[F], 1, 0)
+    length = np.linalg.norm(b - a, axis=1)
+    along = np.einsum("ij,ij->i", c - a, b - a) / length
+    height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / length
+    p, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    by_x = p / length
+    by_y = (q - along * by_x) / height
+    one, two = np.abs(by_x - 1j * by_y) / 2, np.abs(by_x + 1j * by_y) / 2
+    scale = np.sqrt(np.abs(one**2 - two**2))
+    distortion = (one + two) / np.maximum(np.abs(one - two), 1e-300)
+    return int(np.sum(one <= two)), distortion, scale, length * height / 2
+
+
+def _refuse_overlap(flat):
+    half = np.flatnonzero(adjacency.opposites(flat.F) < 0)
+    edges = np.stack([flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]], axis=1)
+    centres = flat.z[flat.F[:: 1 + len(flat.F) // SAMPLES]].mean(axis=1)
+    points, places = (np.stack([z.real, z.imag], axis=1) for z in (flat.z, centres))
+    often = igl.winding_number(points, edges, places) > 1.5
+    if often.mean() > 1e-3:
+        raise ValueError(
+            f"the flattened surface overlaps itself, {100 * often.mean():.2g} % of it: "
+            "cut it into simpler pieces"
+        )

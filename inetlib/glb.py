@@ -1,0 +1,138 @@
+"""GLB (binary glTF 2.0): scenes for the web, for phones and for slides; float32 by the format.
+
+Read here and not by VTK, whose reader ends the process on some broken files.
+
+Paper: Sec. 6 (files; beyond the paper).
+"""
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+
+from .repair import triangulate, weld
+
+TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
+
+
+def read_glb(path):
+    """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene; equal points become one.
+
+    glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    data = Path(path).read_bytes()
+    if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
+        raise ValueError("no GLB file (binary glTF), or a broken one")
+    try:
+        length = int.from_bytes(data[12:16], "little")
+        scene = json.loads(data[20 : 20 + length])
+        needed = scene.get("extensionsRequired", [])
+        if not needed:
+            nodes = scene["scenes"][scene.get("scene", 0)]["nodes"]
+            parts = list(_parts(scene, data[28 + length :], nodes, np.eye(4)))
+    except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
+        raise ValueError(f"the GLB file is broken ({type(error).__name__}: {error})") from error
+    if needed:
+        raise ValueError(f"the GLB file needs the extensions {needed}, which are not known here")
+    if not parts:
+        raise ValueError("the file has no faces")
+    shifts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
+    faces = [corners + shift for (_, corners), shift in zip(parts, shifts, strict=True)]
+    return weld(np.concatenate([points for points, _ in parts]) @ Y_UP, np.concatenate(faces))
+
+
+def _parts(scene, data, nodes, above):
+    """(points, triangles) of every primitive below the nodes, moved to where the scene has it."""
+    for node in (scene["nodes"][k] for k in nodes):
+        place = above @ _matrix(node)
+        mesh = scene["meshes"][node["mesh"]] if "mesh" in node else {"primitives": []}
+        for part in mesh["primitives"]:
+            if part.get("mode", 4) > 4:
+                raise ValueError("it holds strips or fans of triangles")
+            if part.get("mode", 4) == 4:
+                points = _array(scene, data, part["attributes"]["POSITION"], 3)
+                corners = np.arange(len(points))
+                if "indices" in part:
+                    corners = _array(scene, data, part["indices"], 1).ravel().astype(np.int64)
+                if corners.max(initial=-1) >= len(points):
+                    raise ValueError(f"there is no vertex {corners.max()}, only {len(points)}")
+                moved = points.astype(np.float64) @ place[:3, :3].T + place[:3, 3]
+                yield moved, corners.reshape(-1, 3)
+        yield from _parts(scene, data, node.get("children", []), place)
+
+
+def _matrix(node):
+    if "matrix" in node:
+        return np.array(node["matrix"], dtype=float).reshape(4, 4).T
+    x, y, z, w = node.get("rotation", (0, 0, 0, 1))
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    M = np.eye(4)
+    M[:3, :3] = (np.eye(3) + 2 * w * K + 2 * K @ K) * np.array(node.get("scale", (1, 1, 1)))
+    M[:3, 3] = node.get("translation", (0, 0, 0))
+    return M
+
+
+def _array(scene, data, number, width):
+    accessor = scene["accessors"][number]
+    view = scene["bufferViews"][accessor["bufferView"]]
+    kind = np.dtype(TYPES[accessor["componentType"]])
+    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+    strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
+    return np.ndarray((accessor["count"], width), kind, data, start, strides)
+
+
+def write_glb(path, V, Q, polygons, curves):
+    """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
+
+    Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    from .plot import COLOURS, PALE  # matplotlib is slow to import
+
+    triangles = triangulate(V, [*Q, *polygons])
+    ends = {k: np.concatenate([np.stack([c[:-1], c[1:]], 1) for c in f]) for k, f in curves.items()}
+    points = (V @ Y_UP.T).astype("<f4")
+    blocks = [points] + [a.astype("<u4") for a in (triangles, *ends.values())]
+    starts = np.cumsum([0] + [block.nbytes for block in blocks]).tolist()
+    names = ["panels", *ends]
+    kinds = [{"componentType": 5126, "type": "VEC3", "count": len(points)}]
+    kinds[0] |= {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+    kinds += [{"componentType": 5125, "type": "SCALAR", "count": b.size} for b in blocks[1:]]
+    scene = {
+        "asset": {"version": "2.0", "generator": "inetlib"},
+        "scene": 0,
+        "scenes": [{"nodes": list(range(len(names)))}],
+        "nodes": [{"mesh": k, "name": name} for k, name in enumerate(names)],
+        "meshes": [_mesh(k, name) for k, name in enumerate(names)],
+        "materials": [_material(name, {"panels": PALE, **COLOURS}[name]) for name in names],
+        "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": start, "byteLength": block.nbytes}
+            for start, block in zip(starts[:-1], blocks, strict=True)
+        ],
+        "buffers": [{"byteLength": starts[-1]}],
+    }
+    words = json.dumps(scene).encode()
+    words += b" " * (-len(words) % 4)
+    with open(path, "wb") as out:
+        out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(words) + starts[-1]))
+        out.write(struct.pack("<I4s", len(words), b"JSON") + words)
+        out.write(struct.pack("<I4s", starts[-1], b"BIN\0"))
+        out.writelines(block.tobytes() for block in blocks)
+
+
+def _mesh(k, name):
+    part = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": k, "mode": 1}
+    return {"name": name, "primitives": [part | {"mode": 4 if k == 0 else 1}]}
+
+
+def _material(name, colour):
+    srgb = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    factor = [*(srgb**2.2).round(4).tolist(), 1.0]
+    look = {"baseColorFactor": factor, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+    return {"name": name, "doubleSided": True, "pbrMetallicRoughness": look}

@@ -1,0 +1,456 @@
+"""The command line, as a user meets it: exit codes, one sentence for a mistake, no damage."""
+
+import json
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from inetlib import cli, examples, io, mesh, options, paths, report, solver, surfaces
+
+ANGLES = "--theta", "60", "--theta0", "45"
+BLUNT = "--theta", "170", "--theta0", "45"
+
+
+@pytest.fixture
+def inet(capsys, tmp_path, monkeypatch):
+    """inet(*arguments) -> (exit code, stdout, stderr), in an empty folder of its own."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        code = cli.main([str(word) for word in words])
+        out, err = capsys.readouterr()
+        assert "Traceback" not in out + err
+        return code, out, err
+
+    return run
+
+
+@pytest.fixture
+def web(inet):
+    """A small exact net in web.obj."""
+    code, _, err = inet("web", "--profile", "sphere", *ANGLES, "-m", 12, "-n", 4, "-o", "web.obj")
+    assert (code, err) == (0, "")
+    return Path("web.obj")
+
+
+def roof(path):
+    """A wavy roof of triangles."""
+    io.write(path, *examples.wavy_roof(15))
+
+
+def refused(result, words=""):
+    """Whether it was refused with exit code 2 and one sentence that has these words."""
+    code, out, err = result
+    assert code == 2 and out == "", err
+    assert err.startswith("inet: ") and err.count("\n") == 1
+    assert words in err, err
+    return True
+
+
+# --- help, version, examples --------------------------------------------------------------
+
+
+def test_the_entry_point_runs_and_knows_its_version():
+    code = "from importlib.metadata import entry_points as e; "
+    code += "raise SystemExit(e(group='console_scripts', name='inet')['inet'].load()())"
+    done = subprocess.run([sys.executable, "-c", code, "--version"], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith("inet 0.")
+
+
+@pytest.mark.parametrize("command", options.EXAMPLES)
+def test_every_help_text_shows_its_examples(inet, command):
+    code, out, err = inet(*([command] if command else []), "--help")
+    assert (code, err) == (0, "")
+    for line in options.EXAMPLES[command]:
+        assert f"  {line}\n" in out
+    assert max(len(line) for line in out.splitlines()) <= 100
+
+
+@pytest.mark.parametrize("command", [name for name in options.EXAMPLES if name != "figures"])
+def test_every_example_runs(inet, command):
+    roof("roof.obj")
+    for line in options.EXAMPLES[command]:
+        first, *words = shlex.split(line)
+        assert first == "inet"
+        code, out, err = inet(*words)
+        assert (code, err) == (0, ""), line
+        assert out
+        if "-o" in words:
+            assert Path(words[words.index("-o") + 1]).is_file()
+
+
+def test_the_examples_of_figures_name_notebooks():
+    folder = cli.ROOT / "notebooks"
+    for line in options.EXAMPLES["figures"]:
+        for name in line.split()[2:]:
+            assert cli._notebooks(folder, name)
+
+
+@pytest.mark.parametrize("words", [[], ["nets"], ["measure"], ["web", "-o", "a.obj"]])
+def test_what_is_missing_or_unknown_is_said_in_one_sentence(inet, words):
+    assert refused(inet(*words), "--help")
+
+
+# --- measure ------------------------------------------------------------------------------
+
+
+def test_measure_prints_the_angles_and_json_the_same(inet, web):
+    code, out, err = inet("measure", web, *ANGLES)
+    assert (code, err) == (0, "")
+    assert "48 quads" in out and "60.000000000" in out and "45.000000000" in out
+    code, out, err = inet("measure", web, "--json")
+    numbers = json.loads(out)
+    assert (code, err) == (0, "")
+    assert numbers["quads"] == 48 and numbers["labelled"] and numbers["flips"] == 0
+    assert numbers["angles"]["theta"]["mean"] == pytest.approx(60, abs=1e-9)
+    assert numbers["angles"]["theta0"]["mean"] == pytest.approx(45, abs=1e-9)
+    assert numbers["deviation"] < 1e-9
+
+
+def test_measure_compares_with_the_angles_asked_for(inet, web):
+    _, out, _ = inet("measure", web, "--theta", 61, "--theta0", 45, "--json")
+    assert json.loads(out)["deviation"] == pytest.approx(1, abs=1e-9)
+
+
+def test_faces_that_disagree_on_u_and_v_are_labelled_and_a_turned_net_is_noticed(inet, web):
+    V, Q, _ = io.net(web)
+    mixed = Q.copy()
+    mixed[1::2] = np.roll(mixed[1::2], 1, axis=1)
+    io.write("mixed.obj", V, mixed)
+    code, out, _ = inet("measure", "mixed.obj", *ANGLES)
+    assert code == 0 and "note: the faces did not agree" in out and "45.000000000" in out
+    io.write("turned.obj", V, np.roll(Q, 1, axis=1))
+    code, out, _ = inet("measure", "turned.obj", *ANGLES)
+    assert code == 0 and "exchanged" in out and "135.000000000" in out
+
+
+def test_a_mesh_without_labels_is_measured_but_not_optimised(inet):
+    V, Q, polygon = mesh.polygon_rings(5, 2)
+    io.write("five.obj", V, Q, polygons=[polygon])
+    code, out, _ = inet("measure", "five.obj", "--json")
+    numbers = json.loads(out)
+    assert code == 0 and numbers["polygons"] == [5] and not numbers["labelled"]
+    assert "odd" in numbers["notes"][0]
+    assert "1 other faces, with 5 corners" in inet("measure", "five.obj")[1]
+    assert refused(inet("optimize", "five.obj", *ANGLES, "-o", "a.obj"), "odd")
+    assert not Path("a.obj").exists()
+
+
+BAD = {
+    "empty.obj": "",
+    "triangles.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    "nan.obj": "v 0 0 0\nv 1 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3 4\n",
+    "far.obj": "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 9\n",
+    "line.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n",
+    "net.xyz": "0 0 0\n",
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_nets_are_refused(inet, name):
+    Path(name).write_text(BAD[name])
+    assert refused(inet("measure", name))
+    assert refused(inet("optimize", name, *ANGLES, "-o", "a.obj"))
+    assert sorted(path.name for path in Path().iterdir()) == [name]
+
+
+@pytest.mark.parametrize("name", ["empty.obj", "nan.obj", "far.obj", "line.obj", "net.xyz"])
+def test_bad_surfaces_are_refused(inet, name):
+    Path(name).write_text(BAD[name])
+    assert refused(inet("cover", name, *ANGLES, "-o", "a.obj"))
+    assert sorted(path.name for path in Path().iterdir()) == [name]
+
+
+def test_a_file_that_is_not_there_is_named(inet):
+    assert refused(inet("measure", "no such.obj"), "no such.obj")
+    assert refused(inet("cover", "no such.obj", *ANGLES, "-o", "a.obj"), "no such.obj")
+
+
+# --- angles, numbers, outputs -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("value", ["0", "180", "-60", "240", "nan", "inf", "right"])
+@pytest.mark.parametrize("name", ["--theta", "--theta0"])
+def test_angles_lie_between_0_and_180(inet, name, value):
+    words = ["web", "--profile", "vase", *ANGLES, "-m", 12, "-o", "a.obj", f"{name}={value}"]
+    assert refused(inet(*words), f"{value} is given, an angle above 0 and below 180")
+
+
+@pytest.mark.parametrize(
+    "words", [["-m", "0"], ["-m", "2.5"], ["-n", "x"], ["-m", "2"], ["--method", "fast"]]
+)
+def test_numbers_and_choices_are_checked(inet, words):
+    assert refused(inet("web", "--profile=vase", *ANGLES, "-m", 12, "-o", "a.obj", *words))
+
+
+@pytest.mark.parametrize("words", [["--quads", "0"], ["--size", "-1"], ["--direction", "nan"]])
+def test_numbers_of_cover_are_checked(inet, words):
+    assert refused(inet("cover", "roof.obj", *ANGLES, "-o", "a.obj", *words), words[1])
+
+
+@pytest.mark.parametrize("output", ["a.xyz", "a", "no folder/a.obj", "folder.obj", "old.obj"])
+@pytest.mark.parametrize("command", ["web", "optimize", "cover"])
+def test_outputs_are_checked_before_the_work(inet, monkeypatch, command, output):
+    def work(*ignored, **also):
+        raise AssertionError("began")
+
+    for module, name in ((io, "net"), (io, "surface"), (cli.loxodrome, "web")):
+        monkeypatch.setattr(module, name, work)
+    Path("folder.obj").mkdir()
+    Path("old.obj").write_text("precious")
+    first = ["web", "--profile=vase", "-m", 12] if command == "web" else [command, "in.obj"]
+    assert refused(inet(*first, *ANGLES, "-o", output), output.split("/")[0])
+    assert Path("old.obj").read_text() == "precious"
+
+
+def test_force_replaces_and_a_failed_run_does_not(inet, web):
+    before = web.read_bytes()
+    far = "--theta", 80, "--theta0", 100, "--fixed", "boundary"
+    assert inet("optimize", web, *far, "-o", web, "--force")[0] == 1
+    assert web.read_bytes() == before
+    assert inet("web", "--profile=vase", *ANGLES, "-m", 12, "-o", web, "--force")[0] == 0
+    assert web.read_bytes() != before
+
+
+def test_names_with_spaces(inet, web):
+    Path("my nets").mkdir()
+    name = Path("my nets") / "net of mine.ply"
+    assert inet("optimize", web, "--theta", 65, "--theta0", 50, "-o", name)[0] == 0
+    assert "48 quads" in inet("measure", name)[1]
+
+
+def test_ctrl_c_is_one_line(inet, web, monkeypatch):
+    def stop(*ignored, **also):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(solver, "optimize", stop)
+    code, out, err = inet("optimize", web, *ANGLES, "-o", "a.obj")
+    assert (code, out, err) == (130, "", "inet: stopped, nothing was written\n")
+    assert not Path("a.obj").exists()
+
+
+# --- web ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("profile", options.PROFILES)
+def test_webs_on_the_known_profiles(inet, profile):
+    words = "--profile", profile, *ANGLES, "-m", 16, "-o", "a.ply", "--json"
+    code, out, err = inet("web", *words)
+    numbers = json.loads(out)
+    assert (code, err) == (0, "")
+    assert numbers["deviation"] < 1e-9 and numbers["quads"] == 16 * numbers["rows"]
+
+
+def test_a_web_on_a_profile_from_a_file(inet):
+    t = np.linspace(0, 3, 20)
+    rows = [f"{2 + np.sin(x):.6f}, {x:.6f}" for x in t]
+    Path("my jar.csv").write_text("radius, height\n" + "\n".join(rows))
+    assert inet("web", "--profile", "my jar.csv", *ANGLES, "-m", 20, "-o", "a.obj")[0] == 0
+    V = io.net("a.obj").V
+    assert np.abs(np.hypot(V[:, 0], V[:, 1]) - 2 - np.sin(V[:, 2])).max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "two rows"),
+        ("radius,height\n1,0\n", "two rows"),
+        ("1,0\n1;2,3\n", "line 2"),
+        ("1,0\nx,1\n", "line 2"),
+        ("1,0\n1,nan\n", "not finite"),
+        ("1,0\n-1,1\n", "positive"),
+    ],
+)
+def test_bad_profiles_are_refused(inet, text, words):
+    Path("jar.csv").write_text(text)
+    result = inet("web", "--profile", "jar.csv", *ANGLES, "-m", 20, "-o", "a.obj")
+    assert refused(result, words)
+    assert not Path("a.obj").exists()
+
+
+def test_unknown_profiles_and_rows_that_do_not_fit(inet):
+    words = [*ANGLES, "-m", 12, "-o", "a.obj"]
+    assert refused(inet("web", "--profile", "spere", *words), "sphere")
+    assert refused(
+        inet("web", "--profile", "sphere", *BLUNT, "-m", 3, "-o", "a.obj"), "not one row"
+    )
+    code, out, _ = inet("web", "--profile", "sphere", "-n", 500, *words)
+    assert code == 0 and "of 500 rows" in out
+
+
+# --- optimize -----------------------------------------------------------------------------
+
+
+def test_optimize_meets_the_angles_near_a_reference(inet):
+    V, Q = surfaces.freeform_patch(8, 8)
+    io.write("patch.obj", V, Q)
+    words = ["optimize", "patch.obj", *ANGLES, "--reference", "patch.obj", "--on-surface"]
+    code, out, err = inet(*words, "-o", "a.obj", "--json")
+    numbers = json.loads(out)
+    assert (code, err) == (0, "")
+    assert numbers["converged"] and numbers["deviation"] < 1e-8 and numbers["file"] == "a.obj"
+    _, out, _ = inet("measure", "a.obj", *ANGLES, "--json")
+    assert json.loads(out)["deviation"] == pytest.approx(numbers["deviation"], abs=1e-9)
+
+
+def test_optimize_with_ratios_and_too_many_numbers(inet, web):
+    code, out, _ = inet("optimize", web, "--lam", 1.2, "--mu", 1.1, "-o", "a.obj", "--json")
+    numbers = json.loads(out)
+    assert code == 0 and numbers["ratios"]["lam"]["max_deviation"] < 1e-9
+    assert refused(inet("optimize", web, *ANGLES, "--lam", 1.2, "-o", "b.obj"), "drop")
+    assert refused(inet("optimize", web, *ANGLES, "--on-surface", "-o", "b.obj"), "reference")
+
+
+def test_a_net_that_is_off_is_kept_only_when_asked_for(inet, web):
+    words = "optimize", web, "--theta", 80, "--theta0", 100, "--fixed", "boundary", "-o", "a.obj"
+    code, out, err = inet(*words, "--json")
+    assert code == 1 and json.loads(out)["file"] is None
+    assert "not converged" in err and "--keep" in err and not Path("a.obj").exists()
+    code, out, err = inet(*words, "--keep", "--quiet")
+    assert (code, out) == (1, "") and "was written" in err and Path("a.obj").is_file()
+
+
+def test_the_tolerance_decides_what_is_good_enough(inet, web):
+    words = "optimize", web, "--theta", 80, "--theta0", 100, "--fixed", "boundary", "-o", "a.obj"
+    code, out, err = inet(*words, "--tolerance", 90, "--json")
+    assert (code, err) == (0, "") and json.loads(out)["converged"]
+
+
+# --- cover --------------------------------------------------------------------------------
+
+
+def test_cover_meets_the_angles(inet):
+    roof("my roof.obj")
+    words = ["cover", "my roof.obj", "--theta", 60, "--theta0", 60, "--quads", 120]
+    code, out, err = inet(*words, "-o", "a.obj", "--json")
+    numbers = json.loads(out)
+    assert (code, err) == (0, "")
+    assert numbers["converged"] and numbers["deviation"] < 1e-6 and numbers["flips"] == 0
+    assert 60 < numbers["quads"] < 240
+    code, out, err = inet("measure", "a.obj", "--theta", 60, "--theta0", 60, "--json")
+    assert json.loads(out)["deviation"] < 1e-6
+
+
+def test_size_stands_in_place_of_the_number_of_quads(inet):
+    assert refused(
+        inet("cover", "a.obj", *ANGLES, "--quads", 9, "--size", 1, "-o", "b.obj"), "not allowed"
+    )
+
+
+# --- figures ------------------------------------------------------------------------------
+
+
+def test_figures_needs_a_clone_and_names_that_are_there(inet, monkeypatch, tmp_path):
+    assert refused(inet("figures", "fig99"), "fig99")
+    monkeypatch.setattr(cli, "ROOT", tmp_path)
+    assert refused(inet("figures"), "clone")
+
+
+def test_figures_are_found_by_the_notebook_that_draws_them():
+    folder = cli.ROOT / "notebooks"
+    assert cli._notebooks(folder, "fig03") == ["3_3_conformal_grids"]
+    assert cli._notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
+
+
+# --- numbers for JSON ---------------------------------------------------------------------
+
+
+def test_plain_numbers_make_json():
+    spread = report.measure.Spread(np.float64(1), np.int64(2), np.inf, np.nan, 0.5)
+    value = report.plain({"a": spread, "b": (np.arange(2), [True, None, "x"])})
+    assert json.loads(json.dumps(value, allow_nan=False)) == {
+        "a": {"mean": 1, "low": 2, "high": None, "max_deviation": None, "mean_deviation": 0.5},
+        "b": [[0, 1], [True, None, "x"]],
+    }
+
+
+# --- what users bring ---------------------------------------------------------------------
+
+
+def triangles(name, V, F):
+    io.write(name, np.asarray(V, dtype=float), np.asarray(F))
+    return name
+
+
+def three_holes():
+    """The roof without three triangles inside."""
+    V, F = examples.wavy_roof(15)
+    return V, np.delete(F, [68, 148, 228], axis=0)
+
+
+CLOSED = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]
+THREE_AT_AN_EDGE = [[0, 1, 2], [1, 0, 3], [0, 1, 4]]
+
+
+@pytest.mark.parametrize(
+    ("mesh_of", "words"),
+    [
+        (lambda: (np.vstack([np.eye(3), np.zeros((1, 3))]), CLOSED), "closed"),
+        (three_holes, "4 boundary loops"),
+        (lambda: (np.vstack([np.eye(3), -np.eye(3)[:2]]), THREE_AT_AN_EDGE), "edge"),
+    ],
+)
+def test_surfaces_that_are_no_disk_and_no_ring_are_refused(inet, mesh_of, words):
+    name = triangles("in.ply", *mesh_of())
+    assert refused(inet("cover", name, *ANGLES, "-o", "a.obj"), words)
+    assert not Path("a.obj").exists()
+
+
+def test_flipped_triangles_and_double_vertices_are_repaired_and_it_is_said(inet):
+    V, F = examples.wavy_roof(15)
+    F[::3] = F[::3, ::-1]
+    soup = V[F].reshape(-1, 3), np.arange(F.size).reshape(-1, 3)
+    for name, given in (("flipped.ply", (V, F)), ("soup.ply", soup)):
+        triangles(name, *given)
+        words = ["cover", name, "--theta", 60, "--theta0", 60, "--quads", 80]
+        code, out, err = inet(*words, "-o", "a.obj", "--force", "--json")
+        numbers = json.loads(out)
+        assert (code, err) == (0, "") and numbers["deviation"] < 1e-6
+        assert numbers["notes"] and all(note.startswith(f"{name}: ") for note in numbers["notes"])
+
+
+def test_a_binary_file_with_the_wrong_suffix_is_refused(inet, web):
+    Path("in.obj").write_bytes(bytes(range(256)) * 20)
+    Path("in.ply").write_bytes(web.read_bytes())
+    for name in ("in.obj", "in.ply"):
+        assert refused(inet("measure", name), name)
+        assert refused(inet("cover", name, *ANGLES, "-o", "a.obj"), name)
+
+
+def test_a_net_around_a_hexagon_keeps_it(inet):
+    V, Q, polygon = mesh.polygon_rings(6, 3)
+    io.write("six.obj", V, Q, polygons=[polygon])
+    goal = "--theta", 80, "--theta0", 80
+    code, out, _ = inet("optimize", "six.obj", *goal, "-o", "a.obj")
+    assert code == 0 and "1 other faces, with 6 corners" in out
+    assert io.net("a.obj").polygons[0].tolist() == polygon.tolist()
+
+
+# --- formats ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [name for name in io.WRITERS if name not in paths.PACKAGES])
+def test_every_format_is_written(inet, suffix):
+    words = "web", "--profile=cone", *ANGLES, "-m", 8, "-n", 2, "-o", f"a{suffix}"
+    assert inet(*words)[0] == 0
+    assert Path(f"a{suffix}").stat().st_size > 100
+    if suffix in io.READERS:
+        assert len(io.read(f"a{suffix}")[1]) in (16, 32)
+
+
+@pytest.mark.parametrize("suffix", paths.PACKAGES)
+def test_a_missing_package_is_named_before_the_work(inet, monkeypatch, suffix):
+    monkeypatch.setattr(paths.importlib.util, "find_spec", lambda name: None)
+    words = "web", "--profile=cone", *ANGLES, "-m", 8, "-o", f"a{suffix}"
+    assert refused(inet(*words), "pip install")
+
+
+def test_curves_go_into_obj_files_on_request_only(inet):
+    words = "web", "--profile=cone", *ANGLES, "-m", 8, "-n", 2
+    assert inet(*words, "-o", "a.obj")[0] == inet(*words, "-o", "b.obj", "--curves")[0] == 0
+    assert "\nl " not in Path("a.obj").read_text() and "\nl " in Path("b.obj").read_text()
+    assert refused(inet(*words, "-o", "a.ply", "--curves"), "curves")

@@ -1,0 +1,564 @@
+"""`io` against other libraries that read the same files, and against bad files."""
+
+import json
+import struct
+import subprocess
+import sys
+import warnings
+
+import igl
+import numpy as np
+import pytest
+
+from inetlib import cadfiles, io, mesh, repair
+
+THIRD = 1 / 3  # needs all its digits
+CUBE = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
+SIDES = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+TEXT = {  # one quad and one triangle, by hand
+    ".obj": "# x\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2/1 5/2/3 3//4\n",
+    ".off": "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n4 0 1 2 3\n3 1 4 2 255 0 0\n",
+    ".ply": (
+        "ply\nformat ascii 1.0\ncomment x\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nproperty uchar red\nelement face 2\nproperty int id\n"
+        "property list uchar int vertex_index\nelement edge 1\nproperty int vertex1\nend_header\n"
+        "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n2 0 0 9\n7 4 0 1 2 3\n7 3 1 4 2\n5\n"
+    ),
+}
+FACES = [[0, 1, 2, 3], [1, 4, 2]]
+
+
+@pytest.fixture
+def web():
+    """Quads around a hexagon, coordinates with all their digits, large and tiny ones too."""
+    V, Q, polygon = mesh.polygon_rings(6, 3)
+    V[:, 2] = np.sin(V[:, 0]) * np.linspace(1e-12, 1e6, len(V)) * THIRD
+    return V, Q, polygon
+
+
+def package(name):
+    with warnings.catch_warnings():  # pyvista in a notebook without ipywidgets
+        warnings.filterwarnings("ignore", "IProgress not found")
+        return pytest.importorskip(name, reason=f"the package {name} is not installed")
+
+
+def need(suffix):
+    """Skips where the package that the format needs is missing."""
+    for known, name in ((".vtp", "vtkmodules"), (".dxf", "ezdxf"), (".3dm", "rhino3dm")):
+        if suffix == known:
+            package(name)
+
+
+def put(folder, name, content):
+    path = folder / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def stl(V, T):
+    rows = np.zeros(len(T), dtype=[("f", "<f4", (4, 3)), ("other", "<u2")])
+    rows["f"][:, 1:] = V[T]
+    return b"binary".ljust(80) + struct.pack("<I", len(T)) + rows.tobytes()
+
+
+def refused(path, words, read=io.read):
+    with pytest.raises(ValueError, match=words) as caught:
+        read(path)
+    sentence = str(caught.value)
+    assert str(path) in sentence and "\n" not in sentence and len(sentence) < 300
+
+
+# --- round trips --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp"])
+def test_nets_come_back_bit_by_bit(tmp_path, web, suffix):
+    need(suffix)
+    V, Q, polygon = web
+    path = tmp_path / f"a net{suffix.upper()}"
+    curves = "all" if suffix in io.WITH_CURVES else None
+    io.write(path, V, Q, curves, polygons=[polygon])
+    net = io.net(path)
+    assert net.V.dtype == np.float64 and np.array_equal(net.V, V)
+    assert net.Q.dtype == np.int64 and np.array_equal(net.Q, Q)
+    assert [p.tolist() for p in net.polygons] == [polygon.tolist()]
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp"])
+def test_triangles_come_back_too(tmp_path, web, suffix):
+    need(suffix)
+    V, T = mesh.triangles(*web[:2])
+    io.write(tmp_path / f"t{suffix}", V, T)
+    W, F = io.read(tmp_path / f"t{suffix}")
+    assert np.array_equal(W, V) and np.array_equal(F, T)
+
+
+def test_libigl_reads_the_same_obj_and_off(tmp_path, web):
+    V, Q, _ = web
+    for name, read, faces in (("n.obj", igl.readOBJ, 3), ("n.off", igl.readOFF, 1)):
+        io.write(tmp_path / name, V, Q)
+        found = read(str(tmp_path / name))
+        assert np.array_equal(found[0], V) and np.array_equal(found[faces], Q)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply"])
+def test_meshio_reads_the_same_and_is_read(tmp_path, web, suffix):
+    meshio = package("meshio")
+    V, Q, _ = web
+    io.write(tmp_path / f"n{suffix}", V, Q)
+    found = meshio.read(tmp_path / f"n{suffix}")
+    assert found.points.dtype == np.float64 and np.array_equal(found.points, V)
+    assert [c.type for c in found.cells] == ["quad"] and np.array_equal(found.cells[0].data, Q)
+    if suffix == ".ply":
+        for binary in (True, False):
+            found.write(tmp_path / "m.ply", binary=binary)
+            W, F = io.read(tmp_path / "m.ply")
+            assert np.allclose(W, V, rtol=1e-9, atol=0) and np.array_equal(F, Q)
+        assert found.points.shape == (len(V), 3)
+
+
+def test_pyvista_reads_the_same_vtp_with_its_curves(tmp_path, web):
+    pyvista = package("pyvista")
+    V, Q, _ = web
+    io.write(tmp_path / "n.vtp", V, Q, "all")
+    found = pyvista.read(tmp_path / "n.vtp")
+    assert found.points.dtype == np.float64 and np.array_equal(found.points, V)
+    assert np.array_equal(found.faces.reshape(-1, 5)[:, 1:], Q)
+    families = mesh.polylines(Q)
+    asked = [curve.tolist() for family in families for curve in family]
+    lines, at = [], 0
+    while at < len(found.lines):
+        lines.append(found.lines[at + 1 : at + 1 + found.lines[at]].tolist())
+        at += 1 + found.lines[at]
+    assert lines == asked
+    numbers = [k for k, family in enumerate(families) for _ in family] + [-1] * len(Q)
+    assert found.cell_data["family"].tolist() == numbers
+
+
+def test_pyvista_writes_and_we_read(tmp_path, web):
+    pyvista = package("pyvista")
+    V, Q, polygon = web
+    cells = np.concatenate([np.insert(Q, 0, 4, axis=1).ravel(), [6], polygon])
+    pyvista.PolyData(V, faces=cells).save(tmp_path / "n.vtp")
+    W, F = io.read(tmp_path / "n.vtp")
+    assert np.array_equal(W, V) and [*Q.tolist(), polygon.tolist()] == F
+    small = V * [1, 1, 1e-6]
+    solid = pyvista.PolyData(small, faces=cells).triangulate()
+    for binary in (True, False):
+        solid.save(tmp_path / "n.stl", binary=binary)
+        W, F = io.read(tmp_path / "n.stl")
+        assert len(W) == len(V) and len(F) == solid.n_cells
+        assert np.allclose(np.sort(W, axis=0), np.sort(small, axis=0), atol=1e-5)
+
+
+def test_obj_has_the_families_as_groups_of_lines(tmp_path):
+    Q = mesh.grid_quads(2, 1)
+    io.write(tmp_path / "n.obj", np.arange(18.0).reshape(6, 3), Q, "all")
+    lines = (tmp_path / "n.obj").read_text().splitlines()
+    at = [lines.index(f"g {name}") for name in ("panels", "u", "v", "d1", "d2")]
+    assert at == sorted(at)
+    along_u = {tuple(sorted(map(int, line.split()[1:]))) for line in lines[at[1] + 1 : at[2]]}
+    assert along_u == {(1, 3, 5), (2, 4, 6)}
+
+
+# --- GLB ----------------------------------------------------------------------------------
+
+
+def test_glb_is_read_by_vtk_with_lines_and_y_up(tmp_path, web):
+    reader = package("vtkmodules.vtkIOGeometry").vtkGLTFReader()
+    package("vtkmodules.util.numpy_support")
+    V, Q, polygon = web
+    V = V * [1, 1, 1e-6]
+    io.write(tmp_path / "n.glb", V, Q, "all", [polygon])
+    reader.SetFileName(str(tmp_path / "n.glb"))
+    reader.Update()
+    walk = reader.GetOutput().NewIterator()
+    parts = []
+    while not walk.IsDoneWithTraversal():
+        parts.append(walk.GetCurrentDataObject())
+        walk.GoToNextItem()
+    assert [part.GetNumberOfPolys() for part in parts] == [2 * len(Q) + 4, 0, 0, 0, 0]
+    edges = [sum(len(c) - 1 for c in family) for family in mesh.polylines(Q)]
+    assert [part.GetNumberOfLines() for part in parts[1:]] == edges
+    x, y, z = parts[0].GetPoint(5)
+    assert np.allclose([x, -z, y], V[5], atol=1e-6)
+
+
+def test_glb_comes_back_as_triangles_in_float32(tmp_path, web):
+    V, Q, _ = web
+    io.write(tmp_path / "n.glb", V, Q)
+    W, F = io.read(tmp_path / "n.glb")
+    T = mesh.triangles(V, Q)[1]
+    assert np.array_equal(W[F], V.astype(np.float32)[T].astype(np.float64))
+
+
+def glb(scene, body, version=2):
+    words = json.dumps(scene).encode() if isinstance(scene, dict) else scene
+    words += b" " * (-len(words) % 4)
+    head = struct.pack("<4sII", b"glTF", version, 28 + len(words) + len(body))
+    chunk = struct.pack("<I4s", len(body), b"BIN\0") + body
+    return head + struct.pack("<I4s", len(words), b"JSON") + words + chunk
+
+
+def triangle_scene(**accessor):
+    kinds = [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"} | accessor]
+    return {
+        "scenes": [{"nodes": [0]}],
+        "nodes": [
+            {"children": [1], "scale": [2, 2, 2], "translation": [0, 0, 5]},
+            {"mesh": 0, "rotation": [0, 0, np.sqrt(0.5), np.sqrt(0.5)]},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "bufferViews": [{"byteOffset": 0}],
+        "accessors": kinds,
+    }
+
+
+def test_glb_nodes_move_their_meshes(tmp_path):
+    body = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="<f4").tobytes()
+    V, F = io.read(put(tmp_path, "t.glb", glb(triangle_scene(), body)))
+    # a quarter turn about z, twice the size, five along z; then y up becomes z up
+    assert np.allclose(V[F[0]], [[0, -5, 0], [0, -5, 2], [-2, -5, 0]])
+
+
+def test_broken_glb_files_are_refused(tmp_path):
+    body = bytes(36)
+    refused(put(tmp_path, "a.glb", glb(b'{"a":', body)), "broken")
+    refused(put(tmp_path, "b.glb", glb(triangle_scene(count=3_000_000), body)), "broken")
+    refused(put(tmp_path, "c.glb", glb(triangle_scene(), body)[:-4]), "broken")
+    refused(put(tmp_path, "d.glb", glb({"extensionsRequired": ["draco"]}, body)), "draco")
+    loop = triangle_scene() | {"nodes": [{"children": [0]}]}
+    refused(put(tmp_path, "e.glb", glb(loop, body)), "broken")
+
+
+# --- CAD ----------------------------------------------------------------------------------
+
+
+def test_dxf_passes_ezdxf_audit_and_keeps_all(tmp_path, web):
+    ezdxf = package("ezdxf")
+    V, Q, polygon = web
+    families = mesh.polylines(Q)
+    ring = mesh.Families([*families.u, polygon[[0, 1, 2, 3, 4, 5, 0]]], *families[1:])
+    io.write(tmp_path / "a net.dxf", V, Q, ring, [polygon])
+    drawing = ezdxf.readfile(tmp_path / "a net.dxf")
+    audit = drawing.audit()
+    assert not audit.errors and not audit.fixes
+    space = drawing.modelspace()
+    (panels,) = space.query("MESH")
+    assert panels.dxf.layer == "panels"
+    assert np.array_equal(np.array(panels.vertices), V)
+    assert [list(face) for face in panels.faces] == [*Q.tolist(), polygon.tolist()]
+    for name, family in ring._asdict().items():
+        found = list(space.query(f'POLYLINE[layer=="{name}"]'))
+        assert len(found) == len(family)
+        for line, curve in zip(found, family, strict=True):
+            assert line.is_closed == (curve[0] == curve[-1])
+            points = np.array([tuple(vertex.dxf.location) for vertex in line.vertices])
+            assert np.array_equal(points, V[curve[:-1] if line.is_closed else curve])
+
+
+def test_3dm_keeps_quads_and_double_precision(tmp_path, web):
+    rhino = package("rhino3dm")
+    V, Q, polygon = web
+    families = mesh.polylines(Q)
+    io.write(tmp_path / "a net.3dm", V, Q, families, [polygon])
+    model = rhino.File3dm.Read(str(tmp_path / "a net.3dm"))
+    names = [layer.Name for layer in model.Layers]
+    assert names == ["panels", "u", "v", "d1", "d2"]
+    found = {name: [] for name in names}
+    for item in model.Objects:
+        found[names[item.Attributes.LayerIndex]].append(item.Geometry)
+    panels, hexagon = found["panels"]
+    assert panels.IsValid and len(hexagon.Faces) == 4
+    points = [panels.Vertices.Point3dAt(k) for k in range(len(panels.Vertices))]
+    assert np.array_equal([[p.X, p.Y, p.Z] for p in points], V)
+    assert np.array_equal([panels.Faces[k] for k in range(len(panels.Faces))], Q)
+    for name, family in families._asdict().items():
+        assert len(found[name]) == len(family)
+        for line, curve in zip(found[name], family, strict=True):
+            points = [line.Point(k) for k in range(line.PointCount)]
+            assert np.array_equal([[p.X, p.Y, p.Z] for p in points], V[curve])
+
+
+@pytest.mark.parametrize("suffix", [".vtp", ".dxf", ".3dm"])
+def test_a_missing_package_is_one_sentence(tmp_path, web, monkeypatch, suffix):
+    need(suffix)
+    name = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}[suffix]
+    for module in [m for m in sys.modules if m.partition(".")[0] == name]:
+        monkeypatch.delitem(sys.modules, module)
+
+    def importing(module):
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    monkeypatch.setattr(cadfiles.importlib, "import_module", importing)
+    with pytest.raises(ImportError, match=r"pip install inetlib\[(view|cad)\]"):
+        io.write(tmp_path / f"n{suffix}", *web[:2])
+    assert not list(tmp_path.iterdir())
+
+
+# --- reading what others write --------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", list(TEXT))
+@pytest.mark.parametrize("ends", ["\n", "\r\n"])
+def test_text_by_hand(tmp_path, suffix, ends):
+    path = put(tmp_path, f"t{suffix}", TEXT[suffix].replace("\n", ends))
+    V, F = io.read(path)
+    assert V.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0]] and F == FACES
+    net = io.net(path)
+    assert net.Q.tolist() == FACES[:1] and [p.tolist() for p in net.polygons] == FACES[1:]
+    assert io.surface(path).F.tolist() == [[0, 1, 2], [0, 2, 3], [1, 4, 2]]
+
+
+def test_obj_counts_from_the_end_and_continues_lines(tmp_path):
+    words = (
+        "o caf\xe9\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 \\\n 0\nf -3 -2 -1 # x\nv 0 1 0\nf 1 3 \\\n4\n"
+    )
+    V, F = io.read(put(tmp_path, "t.obj", words.encode("latin-1")))
+    assert F.tolist() == [[0, 1, 2], [0, 2, 3]] and V[2].tolist() == [1, 1, 0]
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("uniform", [True, False])
+def test_binary_ply_of_both_byte_orders(tmp_path, order, uniform):
+    kind = {"<": "little", ">": "big"}[order]
+    faces = [[0, 1, 2, 3], [4, 0, 1, 2]] if uniform else FACES
+    head = (
+        f"ply\r\nformat binary_{kind}_endian 1.0\r\nelement vertex 5\r\nproperty uchar red\r\n"
+        "property double x\r\nproperty float y\r\nproperty short z\r\nelement face 2\r\n"
+        "property list uchar uint vertex_indices\r\nproperty double area\r\nend_header\r\n"
+    )
+    body = b"".join(struct.pack(f"{order}Bdfh", 9, k * THIRD, 0.5 * k, -k) for k in range(5))
+    for face in faces:
+        body += struct.pack(f"{order}B{len(face)}Id", len(face), *face, 1.0)
+    V, F = io.read(put(tmp_path, "t.ply", head.encode() + body))
+    assert V.tolist() == [[k * THIRD, 0.5 * k, -k] for k in range(5)]
+    assert (F.tolist() if uniform else F) == faces
+    refused(put(tmp_path, "u.ply", head.encode() + body[:-3]), "ends early")
+
+
+def test_off_variants(tmp_path):
+    words = "COFF 3 1 0\n# x\n0 0 0 1 0 0 1\n\n1 0 0 1 0 0 1\n0 1 0 1 0 0 1\n3 0 1 2\n"
+    assert io.read(put(tmp_path, "c.off", words))[1].tolist() == [[0, 1, 2]]
+    refused(put(tmp_path, "b.off", "OFF BINARY\n"), "text OFF")
+    refused(put(tmp_path, "4.off", "4OFF\n3 1 0\n"), "starts with OFF")
+
+
+# --- surfaces -------------------------------------------------------------------------------
+
+
+def test_a_good_surface_stays_as_it_is(tmp_path, web):
+    V, T = mesh.triangles(*web[:2])
+    io.write(tmp_path / "t.ply", V, T)
+    W, F, repaired = io.surface(tmp_path / "t.ply")
+    assert np.array_equal(W, V) and np.array_equal(F, T) and repaired == []
+
+
+def test_a_broken_surface_is_mended_and_says_so(tmp_path):
+    loose = CUBE[np.array(SIDES)].reshape(-1, 3)  # every side for itself
+    loose[5] += 1e-9
+    faces = np.arange(24).reshape(6, 4)
+    faces[2] = faces[2, ::-1]  # one side turned
+    V = np.concatenate([loose, [[5.0, 5, 5]]])
+    rows = [*faces.tolist(), [0, 1, 1], faces[0].tolist(), [0, 1, 2, 2]]
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in V.tolist()]
+    lines += ["f " + " ".join(str(k + 1) for k in row) for row in rows]
+    W, T, repaired = io.surface(put(tmp_path, "c.obj", "\n".join(lines)))
+    assert W.shape == (8, 3) and T.shape == (12, 3)
+    assert np.isclose(abs(np.linalg.det(W[T]).sum()) / 6, 1)  # all alike: the volume
+    said = " ".join(repaired)
+    for words in ("8 faces with more", "16 duplicate", "4 collapsed", "2 triangles were turned"):
+        assert words in said, said
+    assert "1 unused vertex was dropped" in repaired
+
+
+def test_a_seam_is_closed_or_kept(tmp_path):
+    V = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 0], [1, 1, 0]])
+    path = tmp_path / "s.obj"
+    io.write(path, V, np.array([[0, 1, 2], [4, 5, 3]]))
+    joined, open_one = io.surface(path), io.surface(path, merge=False)
+    assert len(joined.V) == 4 and joined.repaired == ["2 duplicate vertices were merged"]
+    assert len(open_one.V) == 6 and open_one.repaired == []
+
+
+def test_merging_never_makes_a_surface_worse(tmp_path):
+    # three sheets that share an edge only by its place
+    V = np.array([[0, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, -1, 0]], dtype=float)
+    sheets = V[[0, 1, 2, 0, 1, 3, 0, 1, 4]]
+    io.write(tmp_path / "s.ply", sheets, np.arange(9).reshape(3, 3))
+    apart = io.surface(tmp_path / "s.ply")
+    assert len(apart.V) == 9
+    assert apart.repaired[0].startswith("duplicate vertices were not merged: edge 0-1 belongs")
+    io.write(tmp_path / "t.ply", V, np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]]))
+    refused(tmp_path / "t.ply", "more than two faces: not a manifold", io.surface)
+
+
+def test_a_fine_mesh_is_not_merged_away(tmp_path):
+    V = np.array([[0.0, 0, 0], [1e-8, 0, 0], [0, 1e-8, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    io.write(tmp_path / "f.ply", V, np.array([[0, 1, 2], [3, 4, 5]]))
+    assert len(io.surface(tmp_path / "f.ply").V) == 6
+
+
+def test_surfaces_that_are_none(tmp_path):
+    strip = np.array([[0, 1, 3, 2], [2, 3, 5, 4], [4, 5, 0, 1]])  # half a turn
+    angle = np.repeat([0, 2.1, 4.2], 2)
+    V = np.stack([np.cos(angle), np.sin(angle), np.tile([0, 1.0], 3)], axis=1)
+    io.write(tmp_path / "m.ply", V, strip)
+    refused(tmp_path / "m.ply", "only one side", io.surface)
+    V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [2, 0, 0]], dtype=float)
+    io.write(tmp_path / "b.ply", V, np.array([[0, 1, 2], [0, 3, 4]]))
+    refused(tmp_path / "b.ply", "two fans", io.surface)
+    io.write(tmp_path / "l.ply", V, np.array([[0, 1, 2], [0, 5, 1]]))
+    refused(tmp_path / "l.ply", "without area", io.surface)
+    refused(put(tmp_path, "n.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n"), "different corners", io.surface)
+
+
+def test_polygons_are_cut_inside(tmp_path):
+    star = [(3.0 if k % 2 else 1.0) * np.exp(1j * k * np.pi / 5) for k in range(10)]
+    V = np.array([[z.real, z.imag, 0] for z in star])
+    T = repair.triangulate(V, [list(range(10))])
+    a, b, c = np.moveaxis(V[T], 1, 0)
+    areas = np.cross(b - a, c - a)[:, 2] / 2
+    assert len(T) == 8 and (areas > 0).all()
+    assert np.isclose(areas.sum(), 10 * 0.5 * 3 * np.sin(np.pi / 5))
+    with pytest.raises(ValueError, match="sides that cross"):
+        repair.triangulate(np.outer(range(5), [1.0, 1, 1]), [[0, 2, 4, 3, 1]])
+
+
+def test_stl_corners_are_merged(tmp_path):
+    T = repair.triangulate(CUBE, SIDES)
+    V, F, repaired = io.surface(put(tmp_path, "c.stl", stl(CUBE, T)))
+    assert len(V) == 8 and len(F) == 12 and np.array_equal(V[F], CUBE[T])
+    assert repaired == ["corners of triangles at equal points were read as one vertex"]
+    refused(tmp_path / "c.stl", "holds triangles: quads are wanted", io.net)
+
+
+# --- bad files ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", list(io.READERS))
+def test_files_that_are_none(tmp_path, suffix):
+    need(suffix)
+    refused(tmp_path / f"missing{suffix}", "no such file")
+    refused(put(tmp_path, f"e{suffix}", b""), "empty")
+    (tmp_path / f"d{suffix}").mkdir()
+    refused(tmp_path / f"d{suffix}", "directory")
+    for k, junk in enumerate([b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" * 9, b"hello\nworld\n", b" \n"]):
+        refused(put(tmp_path, f"j{k}{suffix}", junk), ".")
+
+
+@pytest.mark.parametrize("suffix", list(io.READERS))
+def test_files_of_another_kind(tmp_path, suffix, web):
+    need(suffix)
+    need(".vtp")
+    for other in (".obj", ".ply", ".off", ".vtp", ".glb"):
+        if other != suffix:
+            io.write(tmp_path / f"a{other}", *web[:2], force=True)
+            data = (tmp_path / f"a{other}").read_bytes()
+            refused(put(tmp_path, f"b{suffix}", data), ".")
+
+
+@pytest.mark.parametrize(
+    "name, content, words",
+    [
+        ("a.obj", "v 0 0 0\nv 1 0\n", "line 2: .* coordinates"),
+        ("b.obj", "v 0 0 0\nv 1 0 x\n", "line 2"),
+        ("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "line 4: there is no vertex 4, only 3"),
+        ("d.obj", "v 0 0 0\nf 0 1 2\n", "line 2: .*counts from 1"),
+        ("e.obj", "v 0 0 0\nf -1 -2 -3\n", "line 2"),
+        ("f.obj", "v 0 0 0\nf 1 1\n", "line 2: a face needs three corners"),
+        ("g.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "vertex 2 .*no usable number"),
+        ("h.obj", "v 0 0 0\nv 1 0 0\n", "no faces"),
+        ("i.obj", "v 0 0 0\nf a b c\n", "line 2: 'a b c' is no face"),
+        ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends early"),
+        ("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: there is no vertex 3"),
+        ("c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n", "line 6: a face of 4 corners"),
+        ("d.off", "OFF\nx\n", "line 2: the numbers"),
+        ("a.ply", TEXT[".ply"][:-22], "ends early"),
+        ("b.ply", TEXT[".ply"].replace("3 1 4 2", "3 1 4 5"), "names vertex 5"),
+        ("c.ply", TEXT[".ply"].replace("property float y", "property half y"), "line 6"),
+        ("d.ply", TEXT[".ply"].replace("float y", "float w"), "x, y and z"),
+        ("e.ply", TEXT[".ply"].replace("element face 2", "element face 0"), "no faces"),
+        ("f.ply", TEXT[".ply"].replace("7 4 0", "7 4 zero"), "face"),
+        ("a.stl", stl(CUBE, np.array([[0, 1, 2]]))[:-1], "133 bytes"),
+        ("b.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "ends early"),
+        ("a.xyz", "0 0 0\n", "the suffix '.xyz': files to read end with .obj"),
+        ("a", "0 0 0\n", "no suffix"),
+    ],
+)
+def test_bad_files_are_one_sentence(tmp_path, name, content, words):
+    refused(put(tmp_path, name, content), words)
+    refused(tmp_path / name, words, io.surface)
+    refused(tmp_path / name, words, io.net)
+
+
+def test_bad_vtp_files_are_refused_in_silence(tmp_path, web, capfd):
+    need(".vtp")
+    io.write(tmp_path / "n.vtp", *web[:2])
+    data = (tmp_path / "n.vtp").read_bytes()
+    for cut in (0.1, 0.5, 0.9):
+        refused(put(tmp_path, "c.vtp", data[: int(cut * len(data))]), "broken, says VTK")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_nets_need_quads(tmp_path, web):
+    V, T = mesh.triangles(*web[:2])
+    io.write(tmp_path / "t.obj", V, T)
+    refused(tmp_path / "t.obj", "holds triangles: quads are wanted", io.net)
+    refused(put(tmp_path, "r.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3 1\n"), "twice", io.net)
+
+
+# --- writing --------------------------------------------------------------------------------
+
+
+def test_nothing_is_overwritten_without_force(tmp_path, web):
+    V, Q, _ = web
+    path = put(tmp_path, "n.obj", "precious")
+    with pytest.raises(FileExistsError, match="exists already"):
+        io.write(path, V, Q)
+    assert path.read_text() == "precious"
+    io.write(path, V, Q, force=True)
+    assert np.array_equal(io.net(path).Q, Q)
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path, web, monkeypatch):
+    path = put(tmp_path, "n.obj", "precious")
+
+    def half(temporary, *_):
+        temporary.write_text("half")
+        raise OSError("disk full")
+
+    monkeypatch.setitem(io.WRITERS, ".obj", half)
+    with pytest.raises(OSError, match="disk full"):
+        io.write(path, *web[:2], force=True)
+    assert path.read_text() == "precious" and list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    "name, more, words",
+    [
+        ("nowhere/n.obj", {}, "no folder"),
+        ("n.xyz", {}, "files to write end with"),
+        ("n.stl", {}, "files to write end with"),
+        ("n.off", {"curves": "all"}, "no place for curves"),
+        ("n.ply", {"curves": "all"}, "no place for curves"),
+        ("n.obj", {"curves": "some"}, "Families"),
+        ("n.obj", {"curves": mesh.Families([[0, 999]], [], [], [])}, "names vertex 999"),
+        ("n.obj", {"curves": mesh.Families([np.zeros((3, 3))], [], [], [])}, "indices is wanted"),
+        ("n.obj", {"polygons": [[0, 1, -1]]}, "names vertex -1"),
+    ],
+)
+def test_what_cannot_be_written_is_refused(tmp_path, web, name, more, words):
+    with pytest.raises(ValueError, match=words):
+        io.write(tmp_path / name, *web[:2], **more)
+    (tmp_path / "d.obj").mkdir()
+    with pytest.raises(ValueError, match="directory"):
+        io.write(tmp_path / "d.obj", *web[:2], force=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["d.obj"]
+
+
+def test_importing_io_imports_no_optional_package():
+    code = "import sys, inetlib.io; sys.exit(bool({*sys.argv[1:]} & {*sys.modules}))"
+    names = "ezdxf", "rhino3dm", "vtkmodules"
+    assert subprocess.run([sys.executable, "-c", code, *names]).returncode == 0
