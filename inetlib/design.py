@@ -14,15 +14,19 @@ from . import clean as cleaning
 from . import flatten, overlay, parallelogram, reference, solver
 from .problem import Weights
 from .steps import timed
-from .survey import Report, survey
+from .survey import Report, area_of, survey
 from .survey import describe as describe  # public here too
 
 NEAR = Weights(fairness=0.02, closeness=0.001, approximation=10.0, boundary=0.0)
+POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
 ATTEMPTS = (  # the first good one is taken: on the surface, near it, reshaped near it
-    *({"on_surface": True, "shape_steps": steps, "via": "jump"} for steps in (0, 2, 8)),
-    {"shape_steps": 0, "via": "jump"},
+    POLISH | {"on_surface": True},
+    POLISH | {"on_surface": True, "shape_steps": 2},
+    POLISH,
     {"shape_steps": 4, "weights": NEAR},
 )
+FINE = 1e-3  # radians: a net on the surface that is this close is finished in space
+GROWN = 1.2  # of the area: a net that grows or shrinks more has folded or collapsed
 AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcome
 
 
@@ -43,6 +47,7 @@ def cover(
     size=None,
     direction=0.0,
     *,
+    boundary="even",
     optimise=True,
     tolerance=1e-11,
     progress=False,
@@ -53,6 +58,8 @@ def cover(
     count, size    about how many quads, or the mean length of their edges instead
     direction      of the u-lines, radians: in the flattened surface against its longest
                    direction, or against the direction around the hole
+    boundary       "even": sizes as equal as a conformal map allows; "plain": another map of
+                   disks; over a ring the u-lines then follow both boundaries (direction=0)
     optimise       move the vertices until the angles are exact (else: nearly)
     tolerance      of the angles, radians; progress: show a bar
 
@@ -72,7 +79,7 @@ def cover(
         surface = cleaning.clean(V, F)
         goal = reference.mesh(surface.V, surface.F)
     with timed(seconds, "flatten"):
-        flat = flatten.flatten(surface.V, surface.F, surface.loops)
+        flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
     with timed(seconds, "grid"):
         domain = overlay.Domain(flat, surface.V)
         layer = overlay.cover(domain, theta, theta0, count, size, direction)
@@ -100,11 +107,14 @@ def _check(count, size, direction):
 
 
 def _optimise(layer, theta, theta0, goal, tolerance, progress):
-    """(V, converged, message) of the first attempt that is good, else of the best one."""
-    best = None
-    for options in ATTEMPTS:
-        result = solver.optimize(
-            layer.V,
+    """(V, converged, message) of the first attempt that is good, else of the best one.
+
+    On a faceted surface the last digits of the angles may not be reached: they are in space.
+    """
+
+    def solve(V, options):
+        return solver.optimize(
+            V,
             layer.Q,
             theta,
             theta0,
@@ -113,12 +123,25 @@ def _optimise(layer, theta, theta0, goal, tolerance, progress):
             progress=progress,
             **options,
         )
+
+    best, area = None, area_of(layer.V, layer.Q)
+    for options in ATTEMPTS:
+        result = solve(layer.V, options)
+        if not result.converged and _deviation(result) < FINE and options is not POLISH:
+            result = solve(result.V, POLISH)
         off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
-        last = result.history[-1]
-        key = (False, 0, off) if result.converged else (True, last.flips, last.deviation)
+        grown = not 1 / GROWN < area_of(result.V, layer.Q) / area < GROWN
+        key = grown, not result.converged, off if result.converged else _deviation(result)
         if best is None or key < best[0]:
             best = key, result
-        if result.converged and off <= AWAY:
+        if not grown and result.converged and off <= AWAY:
             break
     result = best[1]
+    if best[0][0]:
+        return result.V, False, f"the net has folded or collapsed; {result.message}"
     return result.V, result.converged, result.message
+
+
+def _deviation(result):
+    """The largest deviation of an angle in the net returned, infinite if faces are flipped."""
+    return min((step.deviation for step in result.history if not step.flips), default=np.inf)

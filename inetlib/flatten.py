@@ -1,10 +1,11 @@
 """Conformal maps of triangle meshes to the plane: disks, and rings with their period.
 
-Points of the plane are complex numbers.  The map of a disk is the spectral relative of
-LSCM: of all maps it has the smallest conformal energy for the mean square radius of its
-boundary, so that no pair of vertices must be pinned and the scale varies little.  A ring
-is cut from one boundary to the other; the two banks of the cut differ by the period, and
-the two boundaries become parallel lines.
+Points of the plane are complex numbers.  The plain map of a disk is the spectral relative
+of LSCM: of all maps it has the smallest conformal energy for the mean square radius of its
+boundary, so that no pair of vertices must be pinned.  A ring is cut from one boundary to
+the other; the two banks of the cut differ by the period, and in the plain map the two
+boundaries become parallel lines.  The even map then lets the boundary bend until its scale
+is constant: of all conformal maps it is the one whose scale varies least.
 
 Paper: Sec. 6.2 (beyond the paper).
 """
@@ -13,14 +14,18 @@ from typing import NamedTuple
 
 import igl
 import numpy as np
-from scipy.sparse import coo_array, csr_array, eye_array
+from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from . import adjacency, linear
 
 ROUNDS = 100  # of the inverse iteration, at most; five are usual
 STILL = 1e-9  # a change of the map, of its size, that ends the iteration
+BEND = 0.1  # weight of an even boundary, against the conformal energy
+BENDS = 60  # steps towards it, at most
+STRAIGHT = 1e-4  # a change of the map, of its size, that ends them
 SAMPLES = 20000  # triangles that are looked at for overlaps
+OVERLAP = 1e-3  # the part of them that may
 
 
 class Flat(NamedTuple):
@@ -41,28 +46,42 @@ class Flat(NamedTuple):
     scale: np.ndarray
 
 
-def flatten(V, F, loops):
+def flatten(V, F, loops, boundary="even"):
     """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
 
     V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk, and
-    runs around the hole of a ring.  ValueError if the flat surface overlaps itself.
+    runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
+    map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
+    overlaps itself, too.
 
     Paper: Sec. 6.2 (beyond the paper).
     """
+    if boundary not in ("even", "plain"):
+        raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
     if len(loops) == 1:
-        z, faces, origin, period = _disk(V, F, loops[0]), F, np.arange(len(V)), None
+        faces, origin, period = F, np.arange(len(V)), None
+        z, energy = _lscm(V, F, loops[0])
+        z = _disk(z, energy, loops[0])
     else:
-        z, faces, origin, period = _ring(V, F, loops)
-    flips, distortion, scale, area = _judge(V, F, z[faces])
-    grow = np.sqrt(area.sum() / np.sum(area * scale**2))
-    flat = Flat(z * grow, faces, origin, period, flips, distortion, scale * grow)
-    _refuse_overlap(flat)
-    return flat if period is None else flat._replace(period=period * grow)
+        faces, origin, bank = _cut(F, _path(V, F, loops))
+        energy = _lscm(V[origin], faces, np.flatnonzero(bank))[1]  # any pins: no map is wanted
+        z, period = _ring(energy, loops, origin, bank, len(V)), 1.0 + 0j
+    flat = _judged(V, F, z, faces, origin, period)
+    if boundary == "even":
+        z = _even(V, loops, flat, energy)
+        even = _judged(V, F, z, faces, origin, flat.period)
+        if even.flips <= flat.flips and _overlap(even) < OVERLAP:
+            return even
+    if (part := _overlap(flat)) > OVERLAP:
+        raise ValueError(
+            f"the flattened surface overlaps itself, {100 * part:.2g} % of it: "
+            "cut it into simpler pieces"
+        )
+    return flat
 
 
-def _disk(V, F, loop):
-    z, energy = _lscm(V, F, loop)
-    count = len(V)
+def _disk(z, energy, loop):
+    count = len(z)
     matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
     inverse = linear.factor(matrix)
     z = _unit_rim(z, loop)
@@ -73,7 +92,7 @@ def _disk(V, F, loop):
         before, z = z, _unit_rim(x[:count] + 1j * x[count:], loop)
         if np.abs(z - before).max() < STILL * np.abs(z).max():
             break
-    return z * np.exp(-0.5j * _twice_axis(z, F))
+    return z
 
 
 def _twice_axis(z, F):
@@ -103,14 +122,12 @@ def _unit_rim(z, loop):
 # --- rings ----------------------------------------------------------------------------------
 
 
-def _ring(V, F, loops):
-    """(z, F, origin, period 1) of a ring, cut along a shortest path between its loops.
+def _ring(energy, loops, origin, bank, count):
+    """The map z with period 1 of a ring of `count` vertices.
 
     The loops become the lines Im z = 0 and Im z = h, with the h of least energy.
     """
-    faces, origin, bank = _cut(F, _path(V, F, loops))
-    _, energy = _lscm(V[origin], faces, np.flatnonzero(bank))  # any pins: the energy is wanted
-    count, k = len(V), len(origin)
+    k = len(origin)
     column = np.arange(2 * count)  # x and y of each vertex; -1 for what is zero
     column[count + loops[1]] = count + loops[1][0]
     column[count + loops[0]] = column[0] = -1
@@ -120,7 +137,7 @@ def _ring(V, F, loops):
     merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
     jump = np.concatenate([bank, np.zeros(k)])
     x = merge @ linear.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
-    return x[:k] + bank + 1j * x[k:], faces, origin, 1.0 + 0j
+    return x[:k] + bank + 1j * x[k:]
 
 
 def _path(V, F, loops):
@@ -160,7 +177,66 @@ def _cut(F, path):
     return faces.reshape(-1, 3).astype(np.int64), origin, bank
 
 
+# --- even boundaries ------------------------------------------------------------------------
+
+
+def _even(V, loops, flat, energy):
+    """The map whose boundary edges have lengths in proportion to those of the surface.
+
+    Steps: the edges keep their directions and get their wanted lengths as targets, then
+    the sum of the conformal energy and the squared distances from the targets is minimised.
+    """
+    count, k = len(V), len(flat.z)
+    z = flat.z[np.unique(flat.origin, return_index=True)[1]]
+    banks = flat.z - z[flat.origin]  # 0, or the period on one side of the cut
+    start, end, loop = _rims(flat, loops, count)
+    length = np.linalg.norm(V[flat.origin[end]] - V[flat.origin[start]], axis=1)
+    difference = linear.rows(
+        np.tile([[[1.0, -1.0]]], (len(start), 1, 1)), flat.origin[np.stack([end, start], 1)], count
+    )
+    jump = banks[end] - banks[start]
+    weight = BEND / length
+    merge = csr_array((np.ones(2 * k), (np.arange(2 * k), np.r_[flat.origin, flat.origin + count])))
+    bend = difference.T @ diags_array(weight) @ difference
+    A = merge.T @ energy @ merge + block_diag([bend, bend])
+    solve = linear.factor((A + 1e-10 * A.diagonal().mean() * eye_array(2 * count)).tocsr())
+    still = merge.T @ (energy @ np.concatenate([banks.real, banks.imag]))
+    for _ in range(BENDS):
+        edge = difference @ z + jump
+        scale = np.bincount(loop, np.abs(edge)) / np.bincount(loop, length)
+        if flat.period is None:
+            scale[:] = 1  # nothing else fixes the size of a disk
+        target = scale[loop] * length * edge / np.maximum(np.abs(edge), 1e-300)
+        force = difference.T @ (weight * (target - jump))
+        x = solve(np.concatenate([force.real, force.imag]) - still)
+        before, z = z, x[:count] + 1j * x[count:]
+        if np.abs(z - before - (z - before).mean()).max() < STRAIGHT * np.ptp(z.real):
+            break
+    return z[flat.origin] + banks
+
+
+def _rims(flat, loops, count):
+    """(start, end) of the boundary edges, numbered as z is, without the cut, and their loop."""
+    following, owner = np.full(count, -1), np.full(count, -1)
+    for number, loop in enumerate(loops):
+        following[loop], owner[loop] = np.roll(loop, -1), number
+    half = np.flatnonzero(adjacency.opposites(flat.F) < 0)
+    start, end = flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]
+    rim = following[flat.origin[start]] == flat.origin[end]
+    return start[rim], end[rim], owner[flat.origin[start[rim]]]
+
+
 # --- judging --------------------------------------------------------------------------------
+
+
+def _judged(V, F, z, faces, origin, period):
+    """The `Flat` of a map, scaled to the area of the surface, a disk turned to its long axis."""
+    if period is None:
+        z = z * np.exp(-0.5j * _twice_axis(z, faces))
+    flips, distortion, scale, area = _judge(V, F, z[faces])
+    grow = np.sqrt(area.sum() / np.sum(area * scale**2))
+    period = None if period is None else period * grow
+    return Flat(z * grow, faces, origin, period, flips, distortion, scale * grow)
 
 
 def _judge(V, F, corners):
@@ -178,14 +254,10 @@ def _judge(V, F, corners):
     return int(np.sum(one <= two)), distortion, scale, length * height / 2
 
 
-def _refuse_overlap(flat):
+def _overlap(flat):
+    """The part of the flat surface that is covered more than once."""
     half = np.flatnonzero(adjacency.opposites(flat.F) < 0)
     edges = np.stack([flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]], axis=1)
     centres = flat.z[flat.F[:: 1 + len(flat.F) // SAMPLES]].mean(axis=1)
     points, places = (np.stack([z.real, z.imag], axis=1) for z in (flat.z, centres))
-    often = igl.winding_number(points, edges, places) > 1.5
-    if often.mean() > 1e-3:
-        raise ValueError(
-            f"the flattened surface overlaps itself, {100 * often.mean():.2g} % of it: "
-            "cut it into simpler pieces"
-        )
+    return np.mean(igl.winding_number(points, edges, places) > 1.5)

@@ -103,7 +103,7 @@ def _sizes(V, Q, goal):
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(V[Q[:, 2]] - V[Q[:, 0]], axis=1)
     return {
-        "covered": _area(*mesh.triangles(V, Q)) / _area(goal.V, goal.F),
+        "covered": area_of(V, Q) / area_of(goal.V, goal.F),
         "edge_low": float(edges.min()),
         "edge_mean": float(edges.mean()),
         "edge_high": float(edges.max()),
@@ -111,8 +111,12 @@ def _sizes(V, Q, goal):
     }
 
 
-def _area(V, F):
-    return float(igl.doublearea(V, F).sum() / 2)
+def area_of(V, F):
+    """The area of triangles (f, 3) or quads (f, 4), cut along their shorter diagonals.
+
+    Paper: Sec. 6.2 (beyond the paper).
+    """
+    return float(igl.doublearea(*mesh.triangles(V, F)).sum() / 2)
 
 
 def _map(flat):
