@@ -25,10 +25,10 @@ figures: $(READY)
 	$(BIN)/python tools/redraw.py
 
 test: $(READY)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -m "not notebook"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook"
 
 notebooks: $(READY)
 	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb
