@@ -108,12 +108,13 @@ def face_neighbours(Q):
 def boundary_loops(Q):
     """The boundary as a list of closed loops of vertex indices, the mesh on their left.
 
-    The first vertex is not repeated.  A hole (a removed face) gives a loop of its own.
+    Q: quads (f, 4) or triangles (f, 3).  The first vertex is not repeated.  A hole (a
+    removed face) gives a loop of its own.
 
     Paper: Sec. 6.3 (boundary).
     """
-    Q = check_quads(Q)
-    half = np.flatnonzero(twins(Q) < 0)
+    Q = check_faces(Q)
+    half = np.flatnonzero(opposites(Q) < 0)
     start, end = Q.ravel()[half], np.roll(Q, -1, axis=1).ravel()[half]
     vertex, count = np.unique(start, return_counts=True)
     if (count > 1).any():

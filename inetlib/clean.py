@@ -160,17 +160,14 @@ def _one_piece(F, one, two):
 
 def _topology(F):
     """The boundary loops of the oriented faces; ValueError if they are no disk and no ring."""
-    half = np.flatnonzero(adjacency.opposites(F) < 0)
-    sides = F.shape[1]
-    start, end = F.ravel()[half], np.roll(F, -1, axis=1).ravel()[half]
-    triangles = F if sides == 3 else np.concatenate([F[:, [0, 1, 2]], F[:, [0, 2, 3]]])
+    triangles = F if F.shape[1] == 3 else np.concatenate([F[:, [0, 1, 2]], F[:, [0, 2, 3]]])
     pinched = np.intersect1d(np.flatnonzero(~igl.is_vertex_manifold(triangles)), F)
     if pinched.size:
         raise ValueError(
             f"two parts of the surface touch at vertex {pinched[0]} only: not a manifold"
         )
-    loops = _loops(start, end)
-    edges = (F.size + len(half)) // 2
+    loops = adjacency.boundary_loops(F)
+    edges = (F.size + sum(map(len, loops))) // 2
     handles = (2 - len(loops) - (len(np.unique(F)) - edges + len(F))) // 2
     if (len(loops), handles) not in FIT:
         raise ValueError(
@@ -179,14 +176,3 @@ def _topology(F):
             "is wanted: cut it open or into pieces"
         )
     return sorted(loops, key=len, reverse=True)
-
-
-def _loops(start, end):
-    following = dict(zip(start.tolist(), end.tolist(), strict=True))
-    loops = []
-    while following:
-        loop = [next(iter(following))]
-        while (after := following.pop(loop[-1])) != loop[0]:
-            loop.append(after)
-        loops.append(np.array(loop))
-    return loops
