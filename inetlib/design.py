@@ -51,6 +51,7 @@ def cover(
     optimise=True,
     tolerance=1e-11,
     progress=False,
+    callback=None,
 ):
     """The surface V (n, 3), F triangles (f, 3) or quads (f, 4), covered by a net: a `Cover`.
 
@@ -62,6 +63,8 @@ def cover(
                    disks; over a ring the u-lines then follow both boundaries (direction=0)
     optimise       move the vertices until the angles are exact (else: nearly)
     tolerance      of the angles, radians; progress: show a bar
+    callback       (step, V, Q) before the first step of the optimisation (step is None) and
+                   after every one (`runs.Step`); it may return False to stop
 
     The surface is a disk (one boundary loop) or a ring (two), in one piece; the net has whole
     quads only, so that the surface shows at the boundary for less than a quad's width.  Over
@@ -86,7 +89,7 @@ def cover(
     net, done, words = layer.V, False, "not optimised"
     if optimise:
         with timed(seconds, "optimise"):
-            net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress)
+            net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress, callback)
     with timed(seconds, "report"):
         found = survey(net, layer.Q, theta, theta0, goal, flat)
     if done and found["distance_max"] > AWAY:
@@ -106,11 +109,20 @@ def _check(count, size, direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
 
 
-def _optimise(layer, theta, theta0, goal, tolerance, progress):
+def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
     """(V, converged, message) of the first attempt that is good, else of the best one.
 
     On a faceted surface the last digits of the angles may not be reached: they are in space.
     """
+    stopped = False
+
+    def ask(step, V):
+        nonlocal stopped
+        stopped = callback is not None and callback(step, V, layer.Q) is False
+        return not stopped
+
+    if not ask(None, layer.V):
+        return layer.V, False, "stopped by the caller before the first step"
 
     def solve(V, options):
         return solver.optimize(
@@ -121,14 +133,18 @@ def _optimise(layer, theta, theta0, goal, tolerance, progress):
             reference=goal,
             tolerance=tolerance,
             progress=progress,
+            callback=ask,
             **options,
         )
 
     best, area = None, area_of(layer.V, layer.Q)
     for options in ATTEMPTS:
         result = solve(layer.V, options)
-        if not result.converged and _deviation(result) < FINE and options is not POLISH:
+        close = not result.converged and _deviation(result) < FINE
+        if close and options is not POLISH and not stopped:
             result = solve(result.V, POLISH)
+        if stopped:
+            return result.V, False, result.message
         off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
         grown = not 1 / GROWN < area_of(result.V, layer.Q) / area < GROWN
         key = grown, not result.converged, off if result.converged else _deviation(result)

@@ -1,0 +1,305 @@
+"""One browser tab: the page's state, kept in step with a `session.Session`.
+
+Paper: Sec. 3-6 (explorer; beyond the paper).
+"""
+
+import asyncio
+import time
+import traceback
+from math import atan2, hypot, radians
+
+from trame.app import get_server
+from trame.app.core import AVAILABLE_SERVERS
+from trame_vtk.modules import vtk as vtk_module
+
+from . import choices, look, page, plates, scene
+from .session import SAVED, Session
+
+PACE = 0.12  # seconds that a step of an optimisation is seen at least
+REST = 0.2  # seconds without a change before an optimisation begins
+STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
+
+
+class App:
+    """The explorer in one tab: a trame server of its own, without a port.
+
+    surface, path, net: as of `Session`.
+    """
+
+    def __init__(self, name, surface=None, path=None, net=None):
+        self.session = Session(surface, path, net)
+        self.server = get_server(name, client_type="vue3")
+        self.state = self.server.state
+        self.scene = scene.Scene()
+        self.aspect, self.sight, self.fitted = 1.0, None, None
+        self._task = self._search = None
+        self._remake = False
+        self._fill()
+        self.view = page.build(self.server, self.scene.plotter, self.session.given)
+        self.state.change(*choices.NAMES)(self._changed)
+        self.state.change("dark")(self._dressed)
+        for call in (self.arrive, self.fit, self.from_above, self.from_side, self.run, self.stop):
+            self.server.trigger(call.__name__)(call)
+        self.server.trigger("save")(self.save)
+
+    def close(self):
+        """Forget the tab: end its search, free its memory.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        self.session.stop()
+        for task in (self._task, self._search):
+            if task is not None:
+                task.cancel()
+        AVAILABLE_SERVERS.pop(self.server.name, None)
+        vtk_module.HELPERS_PER_SERVER.pop(self.server.name, None)
+        self.scene.plotter.close()
+
+    # --- what the page knows --------------------------------------------------------------
+
+    def _fill(self):
+        """The state before a browser is there."""
+        self.state.trame__title = "Isogonal nets"
+        words = ("alert", "problem", "message", "progress", "code", "link")
+        self.state.update(dict.fromkeys(words, ""))
+        self.state.update(
+            dict.fromkeys(("searching", "can_search", "code_open", "help_open"), False)
+        )
+        self.state.update(dict.fromkeys(("parallelogram_svg", "histogram_svg", "profile_svg"), ""))
+        self.state.update({"dark": False, "numbers": {}})
+        self._dress()
+        self._echo()
+
+    def _echo(self):
+        """Show the choice as it is, whatever was typed."""
+        for name in choices.NAMES:
+            value = getattr(self.session.choice, name)
+            self.state[name] = list(value) if isinstance(value, tuple) else value
+
+    def _dress(self):
+        palette = look.DARK if self.state.dark else look.LIGHT
+        self.state.colours = palette.families
+        self.state.palette = "; ".join(f"--ex-{k}: {v}" for k, v in palette.families.items())
+
+    # --- what the page does ---------------------------------------------------------------
+
+    def arrive(self, query, dark, aspect):
+        """A browser has opened the page: take the link's values, and show the net.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        self.state.dark, self.aspect = bool(dark), float(aspect)
+        self._dress()
+        self.session.choice, problems = choices.parse(str(query), self.session.choice)
+        self._tell(problems)
+        self._echo()
+        self._soon(True)
+
+    def _changed(self, **_):
+        before = self.session.choice
+        values = {name: self.state[name] for name in choices.NAMES}
+        now = {k: list(v) if isinstance(v, tuple) else v for k, v in vars(before).items()}
+        values = {k: v for k, v in values.items() if v != now[k]}
+        if not values:
+            return
+        self._tell(self.session.change(**values))
+        self._echo()
+        remake = set(values) - set(choices.SHOWN)
+        if self.session.choice != before:
+            if {"kind", "map", "surface", "source", "moebius"} & set(values):
+                self.sight = self.fitted = None
+            self._soon(bool(remake))
+
+    def _dressed(self, **_):
+        self._dress()
+        self._soon(False)
+
+    def _tell(self, problems):
+        if problems:
+            self.state.alert = " \u00b7 ".join(problems[:4])
+
+    def run(self):
+        """Begin the search again.
+
+        Paper: Sec. 6 (explorer).
+        """
+        self._soon(True)
+
+    def stop(self):
+        """Stop the search: the best net so far is kept.
+
+        Paper: Sec. 6 (explorer).
+        """
+        self.session.stop()
+
+    def save(self, suffix, camera):
+        """The bytes of a file, for the browser to keep; None, and a message, if there is none.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        try:
+            x, y, z = (a - b for a, b in zip(camera["position"], camera["focalPoint"], strict=True))
+            sight = (atan2(y, x), atan2(z, hypot(x, y))) if hypot(x, y) > 1e-6 * abs(z) else ()
+            data = self.session.save(suffix if suffix in SAVED else "", *sight)
+        except (ValueError, ImportError, KeyError, TypeError) as error:
+            self.state.alert = f"not saved: {error}"
+            return None
+        return self.server.protocol.addAttachment(data)
+
+    # --- the camera -----------------------------------------------------------------------
+
+    def fit(self, aspect=None):
+        """See the whole net, from where it is seen by default.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        if aspect is not None:
+            self.aspect = float(aspect)
+        kind = "cover" if self.session.given else self.session.choice.kind
+        flat = kind == "plane" or (self.session.V is not None and not self.session.V[:, 2].any())
+        self._look(scene.VIEWS["plane"] if flat else scene.VIEWS[kind])
+
+    def from_above(self, aspect=None):
+        """See the whole net from above.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        self.aspect = float(aspect or self.aspect)
+        self._look((-90.0, 90.0))
+
+    def from_side(self, aspect=None):
+        """See the whole net from the side.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        self.aspect = float(aspect or self.aspect)
+        self._look((-60.0, 15.0))
+
+    def _look(self, sight):
+        V = self.session.V
+        if V is None:
+            return
+        self.sight, self.fitted = sight, _extent(V)
+        self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
+
+    def _look_if_lost(self):
+        """Fit the net where it is new, or much larger or smaller than when it was fitted."""
+        if self.session.V is None:
+            return
+        if self.fitted is None:
+            self.fit()
+            return
+        middle, size = _extent(self.session.V)
+        away = abs(middle - self.fitted[0]).max() > 0.5 * self.fitted[1]
+        if away or not 1 / STRETCH < size / self.fitted[1] < STRETCH:
+            self._look(self.sight)
+
+    # --- keeping in step ------------------------------------------------------------------
+
+    def _soon(self, remake):
+        """Show the net when the changes that are waiting have come; remake: make it first."""
+        self._remake = self._remake or remake
+        if self._task is None or self._task.done():
+            self._task = self._begin(self._refresh())
+
+    def _begin(self, work):
+        return asyncio.get_running_loop().create_task(self._safely(work))
+
+    async def _safely(self, work):
+        """What nobody waits for must not fail in silence."""
+        try:
+            await work
+        except Exception as error:
+            traceback.print_exc()
+            with self.state:
+                self.state.problem = f"something went wrong: {error}"
+
+    async def _refresh(self):
+        await asyncio.sleep(0)
+        remake, self._remake = self._remake, False
+        search = remake and self.session.must_search
+        if remake:
+            self.session.stop()
+            if self._search is not None:
+                self._search.cancel()
+            self.state.searching = search
+            if search:
+                self._search = self._begin(self._find())
+            else:
+                self.session.construct()
+        with self.state:
+            if search:
+                self.state.progress = "preparing \u2026"
+                self._plates()
+            else:
+                self._show()
+
+    async def _find(self):
+        """Search for the net of the choice, when the changes have come to rest."""
+        await asyncio.sleep(REST)
+        run, loop = self.session.begin(), asyncio.get_running_loop()
+
+        def seen(V, Q, steps):
+            loop.call_soon_threadsafe(self._frame, run, V, Q, steps)
+            time.sleep(PACE)
+
+        await asyncio.to_thread(self.session.search, run, seen)
+        if self.session.run is None:
+            with self.state:
+                self.state.searching = False
+                self._show()
+
+    def _frame(self, run, V, Q, steps):
+        if self.session.on_the_way(run, V, Q):
+            with self.state:
+                self.state.progress = f"step {steps}" if steps else "start"
+                self._show()
+
+    def _show(self):
+        """The net, its numbers and drawings, as the session has them."""
+        session, state = self.session, self.state
+        state.problem, state.message = session.problem, session.message
+        state.can_search = session.must_search
+        self._plates()
+        if session.V is None:
+            return
+        shade = session.colours() if session.choice.shade else None
+        self.scene.show(session.V, session.Q, session.choice, state.dark, shade)
+        self.view.update()
+        self._look_if_lost()
+        state.numbers = _texts(session)
+        state.histogram_svg = plates.histograms(
+            *session.deviations(), (session.shown.theta, session.shown.theta0)
+        )
+
+    def _plates(self):
+        choice = self.session.choice
+        angles = radians(choice.theta), radians(choice.theta0)
+        self.state.parallelogram_svg = plates.parallelogram(*angles)
+        self.state.profile_svg = plates.profile(choice.radii)
+        self.state.code, self.state.link = self.session.code(), self.session.link()
+        if self.server.protocol and not self.session.given:
+            self.server.js_call("address", "exec", self.state.link)
+
+
+def _extent(V):
+    return (V.min(axis=0) + V.max(axis=0)) / 2, float(abs(V - V.mean(axis=0)).max())
+
+
+def _texts(session):
+    """The numbers of the net as the page shows them."""
+    n, shown = session.numbers(), session.shown
+    return {
+        "quads": f"{n.quads:,}".replace(",", "\u2009"),
+        "lam": f"{n.lam:.5g}",
+        "mu": f"{n.mu:.5g}",
+        "mean_theta": f"{n.mean_theta:.6f}",
+        "mean_theta0": f"{n.mean_theta0:.6f}",
+        "theta_off": plates.short(n.theta_off),
+        "theta0_off": plates.short(n.theta0_off),
+        "flips": str(n.flips),
+        "size_low": plates.short(n.size_low, 3),
+        "size_high": plates.short(n.size_high, 3),
+        "theta": f"{shown.theta:.10g}",
+        "theta0": f"{shown.theta0:.10g}",
+    }

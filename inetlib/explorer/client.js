@@ -1,0 +1,60 @@
+// What the explorer's page does on its own: the address, files, the clipboard, the keyboard.
+window.inet = {
+  view() { return window.trame.refs.view; },
+  camera() {
+    const { position, focalPoint } = this.view().getCamera();
+    return { position, focalPoint };
+  },
+  place() {
+    const box = document.querySelector(".ex-view").getBoundingClientRect();
+    return box.width > 0 && box.height > 0 ? box.width / box.height : 1;
+  },
+  link(query) {
+    window.history.replaceState(null, "", `${window.location.pathname}?${query}`);
+  },
+  copy(text, what) {
+    const done = () => window.trame.state.set("alert", `${what} copied`);
+    const failed = () => window.trame.state.set("alert", "the browser did not allow copying: select the text");
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, failed);
+    else failed();
+  },
+  async save(suffix, mime) {
+    const data = await window.trame.trigger("save", [suffix, this.camera()]);
+    if (data) window.trame.utils.download(`net${suffix}`, data, mime);
+  },
+  turn(right, up) {
+    // Around the point in the middle; z stays upright, as with the mouse it need not.
+    const c = this.view().getCamera();
+    const d = c.position.map((x, k) => x - c.focalPoint[k]);
+    const r = Math.hypot(...d);
+    const a = Math.atan2(d[1], d[0]) + (right * Math.PI) / 180;
+    const flat = Math.hypot(d[0], d[1]) < 1e-6 * r;
+    const azimuth = flat ? Math.atan2(-c.viewUp[1], -c.viewUp[0]) + (right * Math.PI) / 180 : a;
+    const limit = Math.PI / 2 - 1e-3;
+    const e = Math.max(-limit, Math.min(limit, Math.asin(Math.max(-1, Math.min(1, d[2] / r))) + (up * Math.PI) / 180));
+    const towards = [Math.cos(e) * Math.cos(azimuth), Math.cos(e) * Math.sin(azimuth), Math.sin(e)];
+    const viewUp = [-Math.sin(e) * Math.cos(azimuth), -Math.sin(e) * Math.sin(azimuth), Math.cos(e)];
+    this.view().setCamera({ ...c, position: towards.map((x, k) => c.focalPoint[k] + r * x), viewUp });
+  },
+  zoom(factor) {
+    const c = this.view().getCamera();
+    this.view().setCamera({ ...c, parallelScale: c.parallelScale * factor });
+  },
+  keys(event) {
+    const step = { ArrowLeft: [-10, 0], ArrowRight: [10, 0], ArrowUp: [0, 10], ArrowDown: [0, -10] }[event.key];
+    if (step) this.turn(...step);
+    else if (event.key === "+" || event.key === "=") this.zoom(0.8);
+    else if (event.key === "-") this.zoom(1.25);
+    else if (event.key === "f") window.trame.trigger("fit", [this.place()]);
+    else return;
+    event.preventDefault();
+  },
+  arrive() {
+    const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
+    window.trame.trigger("arrive", [window.location.search, dark, this.place()]);
+  },
+};
+(function wait(tries) {
+  if (window.trame && window.trame.refs.view && document.querySelector(".ex-view")) window.inet.arrive();
+  else if (tries) setTimeout(wait, 50, tries - 1);
+})(600);

@@ -1,0 +1,170 @@
+"""What a net looks like in the explorer: its cells, curves, colours, and pictures of it.
+
+Paper: Sec. 3-6 (explorer; beyond the paper).
+"""
+
+import io
+from itertools import pairwise
+from typing import NamedTuple
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+
+from .. import plot
+
+DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
+
+
+class Palette(NamedTuple):
+    """Colours: the background, the faces, the parallelograms, and the four families."""
+
+    background: str
+    face: str
+    black: str
+    families: dict
+
+
+LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", plot.COLOURS)
+DARK = Palette(
+    "#11161d",
+    "#434f5d",
+    "#6d88a8",
+    {"u": "#7db0ff", "v": "#ff8f5e", "d1": "#45d6ab", "d2": "#ffd04a"},
+)
+
+
+def shades(off):
+    """The colours of deviations (degrees) on a logarithmic scale: bytes (k, 3).
+
+    Below 10^DECADES[0] degrees the faces are nearly white.
+
+    Paper: Sec. 4.1 (explorer).
+    """
+    low, high = DECADES
+    part = (np.log10(np.maximum(off, 1e-300)) - low) / (high - low)
+    rgb = matplotlib.colormaps["Purples"](np.clip(0.2 + 0.8 * part, 0.2, 1))[:, :3]
+    rgb[part < 0] = to_rgb("#f4f6f8")
+    return np.round(255 * rgb).astype(np.uint8)
+
+
+def scale():
+    """The colours and names of the scale of `shades`: [(colour, words), ...].
+
+    Paper: Sec. 4.1 (explorer).
+    """
+    powers = np.arange(DECADES[0] - 1, DECADES[1] + 1)
+    words = [f"{10.0**p:g}\u00b0" for p in powers]
+    words[0] = f"< {words[1]}"
+    colours = shades(10.0**powers)
+    return [(f"rgb({r},{g},{b})", w) for (r, g, b), w in zip(colours.tolist(), words, strict=True)]
+
+
+def line_width(quads):
+    """The width of the curves in pixels: thinner where there are more quads.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    return 3 if quads < 200 else 2 if quads < 3000 else 1
+
+
+class Layout(NamedTuple):
+    """What is filled and drawn of a net, by vertex numbers.
+
+    means: arrays (k, s) of vertices of the net; their means are further vertices, in order;
+    quads (f, 4) and triangles (t, 3) are filled; lines: {family: (k, 2)} segments.
+    """
+
+    means: list
+    quads: np.ndarray
+    triangles: np.ndarray
+    lines: dict
+
+
+def layout(Q, count, families, parallelograms=False):
+    """The `Layout` of quads Q on `count` vertices.
+
+    With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
+    Diagonals run through the mean of the four corners, on the surface that is filled: where
+    they are shown, the quads become triangles around it.
+
+    Paper: Sec. 2, Sec. 4.1 (explorer).
+    """
+    sides = np.stack([Q, np.roll(Q, -1, axis=1)], axis=2)
+    edges, around = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    around = around.reshape(-1, 4)
+    along_u = np.zeros(len(edges), dtype=bool)
+    along_u[around[:, [1, 3]]] = True  # v2 v3 and v4 v1
+    lines = {"u": edges[along_u], "v": edges[~along_u]}
+    inner = {"d1", "d2"} & set(families)
+    quads, triangles, means = Q, np.empty((0, 3), dtype=np.int64), []
+    if parallelograms:
+        quads, means = around + count, [edges]
+        triangles = np.stack([Q, quads, np.roll(quads, 1, axis=1)], axis=2).reshape(-1, 3)
+        count += len(edges)
+    if inner:
+        centre = count + np.arange(len(Q))[:, None]
+        spokes = [np.broadcast_to(centre, Q.shape), Q]
+        means = [*means, Q]
+        if parallelograms:  # over the side of the parallelogram, down to the corner
+            between = count + len(Q) + np.arange(Q.size).reshape(-1, 4)
+            near = [Q, Q, np.roll(Q, 1, axis=1), np.roll(Q, -1, axis=1)]
+            means, spokes = [*means, np.stack(near, axis=2).reshape(-1, 4)], [spokes[0], between, Q]
+        else:
+            fan = [np.roll(Q, -1, axis=1), spokes[0]]
+            quads, triangles = Q[:0], np.stack([Q, *fan], axis=2).reshape(-1, 3)
+        pieces = [np.stack(p, axis=2) for p in pairwise(spokes)]
+        for name, corners in (("d1", [0, 2]), ("d2", [1, 3])):
+            lines[name] = np.concatenate([p[:, corners].reshape(-1, 2) for p in pieces])
+    return Layout(means, quads, triangles, {name: lines[name] for name in families})
+
+
+def points(V, layout):
+    """The vertices of a layout: V and the means.
+
+    Paper: Sec. 2, Sec. 4.1 (explorer).
+    """
+    return np.concatenate([V, *(V[k].mean(axis=1) for k in layout.means)])
+
+
+def fills(layout, palette, shade=None):
+    """RGB bytes of all cells, first the quads: (f + t, 3); shade: one colour a face, or None.
+
+    Paper: Sec. 2 (explorer).
+    """
+    quads, triangles = len(layout.quads), len(layout.triangles)
+    if shade is not None:
+        return np.concatenate([shade[:quads], np.repeat(shade, 4, axis=0)[:triangles]])
+    colour = palette.black if quads and triangles else palette.face
+    pair = np.round(255 * np.array([to_rgb(colour), to_rgb(palette.face)])).astype(np.uint8)
+    return np.repeat(pair, [quads, triangles], axis=0)
+
+
+def picture(V, Q, choice, shade, camera, form):
+    """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
+
+    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
+
+    Paper: Sec. 3-6 (explorer; beyond the paper).
+    """
+    with matplotlib.rc_context():
+        plot.use_style()
+        matplotlib.rcParams["svg.hashsalt"] = "inetlib"
+        figure = Figure(figsize=(8, 6), layout="none")
+        ax = figure.add_axes([0.02, 0.02, 0.96, 0.96])
+        ax.set_aspect("equal")
+        ax.set_axis_off()
+        plan = layout(Q, len(V), choice.families, choice.parallelograms)
+        W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
+        fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")
+        lines = [
+            (W[pair], plot.COLOURS[name], 0.6 * line_width(len(Q)))
+            for name, pairs in plan.lines.items()
+            for pair in pairs
+        ]
+        plot.scene(ax, camera, W, faces, fill, lines)
+        file = io.BytesIO()
+        metadata = {"Date": None} if form == "svg" else {"Software": None}
+        figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
+    return file.getvalue()

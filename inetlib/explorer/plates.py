@@ -1,0 +1,151 @@
+"""Small drawings of the explorer as SVG text: the parallelogram, two histograms, a profile.
+
+Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2.
+
+Paper: Fig. 1, Sec. 4.1 (explorer).
+"""
+
+import numpy as np
+
+from ..drawings._parallelogram import corners
+from .choices import HEIGHTS
+
+BOX = 270, 150  # of the parallelogram and the histograms, in pixels
+BINS = 27
+EXACT = 1e-9  # degrees: smaller deviations are rounding
+
+
+def parallelogram(theta, theta0):
+    """The parallelogram of the angles (radians) with its two marked angles.
+
+    Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
+    medial lines, in those of u and v.
+
+    Paper: Lemma 1, Fig. 1.
+    """
+    shape = corners(theta, theta0)
+    low = shape.real.min() + 1j * shape.imag.min()
+    size = np.ptp(shape.real), np.ptp(shape.imag)
+    width, height = BOX[0] - 60, BOX[1] - 44
+    scale = min(width / size[0], height / size[1])
+    shape = (shape - low) * scale
+    shape += (BOX[0] - np.ptp(shape.real)) / 2 + 1j * (BOX[1] - np.ptp(shape.imag)) / 2
+    A, B, C, D = shape.real + 1j * (BOX[1] - shape.imag)
+    centre = (A + C) / 2
+    least = min(abs(C - B), abs(A - B))
+    parts = [
+        _line(A, C, "v", 1.5),
+        _line(B, D, "u", 1.5),
+        _line(B, C, "d1", 3),
+        _line(A, D, "d1", 3),
+        _line(B, A, "d2", 3),
+        _line(C, D, "d2", 3),
+        _arc(B, C - B, A - B, min(26, 0.45 * least), "\u03b8"),
+        _arc(centre, D - centre, A - centre, min(22, 0.4 * abs(D - centre)), "\u03b8\u2080"),
+    ]
+    return _svg(BOX, parts, f"parallelogram with the angle {np.degrees(theta):.4g} degrees")
+
+
+def histograms(theta, theta0, asked):
+    """How far both angles are off, face by face: two histograms with one scale.
+
+    theta, theta0: deviations in degrees, (f,); asked: the two angles in degrees.
+
+    Paper: Sec. 4.1 (explorer).
+    """
+    reach = _nice(max(np.abs(theta).max(), np.abs(theta0).max(), EXACT))
+    parts = []
+    for row, (off, name, angle) in enumerate(
+        ((theta, "\u03b8", asked[0]), (theta0, "\u03b8\u2080", asked[1]))
+    ):
+        base = 58 + 70 * row
+        count, _ = np.histogram(off, BINS, (-reach, reach))
+        wide = (BOX[0] - 20) / BINS
+        for k in np.flatnonzero(count):
+            high = max(1.5, 40 * count[k] / count.max())
+            parts.append(
+                f'<rect class="bar{row}" x="{10 + k * wide:.1f}" y="{base - high:.1f}" '
+                f'width="{wide - 1:.1f}" height="{high:.1f}"/>'
+            )
+        parts.append(_line(10 + 1j * base, BOX[0] - 10 + 1j * base, "axis", 1))
+        parts.append(_text(10, base - 46, f"{name} \u2212 {angle:.6g}\u00b0", "start"))
+    base = BOX[1] - 6
+    for x, value in ((10, -reach), (BOX[0] / 2, 0), (BOX[0] - 10, reach)):
+        anchor = "start" if x == 10 else "middle" if x < BOX[0] - 10 else "end"
+        parts.append(_text(x, base, f"{short(value, 1)}\u00b0", anchor))
+    return _svg(BOX, parts, "histograms of the deviations of both angles")
+
+
+def _nice(x):
+    """The next of 1, 2, 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(x))
+    return float(f"{next(k for k in (1, 2, 5, 10) if x <= k * power * (1 + 1e-12)) * power:.0e}")
+
+
+def profile(radii):
+    """The meridian with its radii, the axis at the left.
+
+    Paper: Sec. 5.3 (explorer).
+    """
+    from ..surfaces import spline_profile
+
+    box = 110, 150
+    scale = min((box[0] - 16) / max(1.3, 1.1 * max(radii)), (box[1] - 16) / HEIGHTS[-1])
+    parts = [_line(8 + 4j, 8 + 1j * (box[1] - 4), "axis", 1)]
+    points = list(zip(radii, HEIGHTS, strict=True))
+    try:
+        curve = spline_profile(points)
+        t = np.linspace(curve.start, curve.stop, 81)
+        xy = _place(curve.radius(t), curve.height(t), scale, box)
+        drawn = " ".join(f"{x:.1f},{y:.1f}" for x, y in xy)
+        parts.append(f'<polyline class="line" stroke-width="2" fill="none" points="{drawn}"/>')
+    except ValueError:
+        pass  # the page says why there is no net
+    for x, y in _place(*np.array(points).T, scale, box):
+        parts.append(f'<circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="3.5"/>')
+    return _svg(box, parts, "profile")
+
+
+def _place(radius, height, scale, box):
+    return np.stack([8 + scale * radius, box[1] - 8 - scale * height], axis=1)
+
+
+def short(x, digits=2):
+    """A number with so many digits, in few characters: 0.25, 4.3e-13, with a true minus.
+
+    Paper: Sec. 4.1 (explorer).
+    """
+    text = f"{x:.{digits}g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
+    return text.replace("-", "\u2212")
+
+
+# --- pieces of SVG ------------------------------------------------------------------------
+
+
+def _svg(box, parts, words):
+    return (
+        f'<svg viewBox="0 0 {box[0]} {box[1]}" role="img" aria-label="{words}" '
+        f'xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
+    )
+
+
+def _line(a, b, kind, width):
+    return (
+        f'<line class="{kind}" stroke-width="{width}" stroke-linecap="round" '
+        f'x1="{a.real:.1f}" y1="{a.imag:.1f}" x2="{b.real:.1f}" y2="{b.imag:.1f}"/>'
+    )
+
+
+def _text(x, y, words, anchor="middle"):
+    return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>'
+
+
+def _arc(apex, start, end, radius, label):
+    """An arc around the apex from the direction start to the direction end, and its name."""
+    turn = np.angle(end / start)
+    t = start / abs(start) * np.exp(1j * np.linspace(0, turn, 24))
+    points = " ".join(f"{p.real:.1f},{p.imag:.1f}" for p in apex + radius * t)
+    at = apex + (radius + 11) * t[12]
+    x, y = np.clip(at.real, 8, BOX[0] - 8), np.clip(at.imag, 8, BOX[1] - 6)
+    arc = f'<polyline class="line" stroke-width="1.2" fill="none" points="{points}"/>'
+    return arc + _text(x, y + 4, label)

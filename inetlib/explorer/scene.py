@@ -1,0 +1,97 @@
+"""The net as a pyvista scene that the browser draws: no OpenGL is needed where Python runs.
+
+Paper: Sec. 3-6 (explorer; beyond the paper).
+"""
+
+import numpy as np
+from matplotlib.colors import to_rgb
+
+from .. import view
+from . import look
+
+VIEWS = {  # azimuth and elevation of the viewer, degrees
+    "plane": (-90.0, 90.0),
+    "isothermal": (-50.0, 25.0),
+    "revolution": (-50.0, 25.0),
+    "freeform": (-60.0, 40.0),
+    "cover": (-60.0, 40.0),
+}
+
+
+class Scene:
+    """A plotter with two meshes, the cells and the curves of a net, changed in place.
+
+    Arrays that stay the same are not sent to the browser again.
+    """
+
+    def __init__(self):
+        pyvista = view._pyvista()
+        self.plotter = pyvista.Plotter(off_screen=True)
+        corner = np.eye(3)
+        self.faces = pyvista.PolyData(corner, faces=[3, 0, 1, 2])
+        self.curves = pyvista.PolyData(corner, lines=[2, 0, 1])
+        for data in (self.faces, self.curves):
+            data.cell_data["rgb"] = np.zeros((1, 3), dtype=np.uint8)
+        colours = {"scalars": "rgb", "rgb": True}
+        solid = self.plotter.add_mesh(self.faces, ambient=0.35, diffuse=0.7, **colours)
+        solid.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # curves lie in front
+        self.actor = self.plotter.add_mesh(self.curves, lighting=False, **colours)
+        self._known = self._layout = None
+
+    def show(self, V, Q, choice, dark=False, shade=None):
+        """Put a net into the scene; shade: RGB bytes a face (f, 3), or None.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        palette = look.DARK if dark else look.LIGHT
+        known = choice.families, choice.parallelograms, dark, shade is None, Q.tobytes()
+        new, self._known = known != self._known, known
+        if new:
+            self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms)
+        points = look.points(np.asarray(V, dtype=np.float32), self._layout)
+        self.faces.points = self.curves.points = points
+        if new:
+            self._cells(palette, len(Q))
+        if new or shade is not None:
+            self.faces.cell_data["rgb"] = look.fills(self._layout, palette, shade)
+            self.plotter.set_background(palette.background)
+
+    def _cells(self, palette, quads):
+        """New cells: the old colours do not fit them."""
+        self.faces.cell_data.clear()
+        self.curves.cell_data.clear()
+        filled = _counted(self._layout.quads), _counted(self._layout.triangles)
+        self.faces.faces = np.concatenate(filled)
+        lines = {name: pairs for name, pairs in self._layout.lines.items() if len(pairs)}
+        colours = np.array([to_rgb(palette.families[name]) for name in lines] or [(0, 0, 0)])
+        pairs = list(lines.values()) or [np.zeros((1, 2), dtype=np.int64)]
+        self.curves.lines = _counted(np.concatenate(pairs))
+        rgb = np.repeat(np.round(255 * colours), [len(p) for p in pairs], axis=0)
+        self.curves.cell_data["rgb"] = rgb.astype(np.uint8)
+        self.actor.visibility = bool(lines)
+        self.actor.prop.line_width = look.line_width(quads)
+
+    def camera(self, V, azimuth, elevation, aspect=1.0):
+        """The camera (for vtk.js) that sees all of V from a direction, as near as it can.
+
+        azimuth, elevation: degrees; aspect: width / height of the window.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        a, e = np.radians([azimuth, elevation])
+        ca, sa, ce, se = np.cos(a), np.sin(a), np.cos(e), np.sin(e)
+        axes = np.array([[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
+        low, high = (V @ axes.T).min(axis=0), (V @ axes.T).max(axis=0)
+        middle = axes.T @ (low + high) / 2
+        size = max(np.linalg.norm(high - low), 1e-12)
+        scale = 0.54 * max((high - low)[1], (high - low)[0] / aspect, 1e-6 * size)
+        camera = self.plotter.camera
+        camera.parallel_projection, camera.parallel_scale = True, scale
+        camera.focal_point, camera.position = middle, middle + 3 * size * axes[2]
+        camera.up = axes[1]
+        return camera
+
+
+def _counted(cells):
+    """Cells of one size (k, s) as VTK wants them: the size before each."""
+    return np.insert(cells, 0, cells.shape[1], axis=1).ravel()
