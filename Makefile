@@ -7,12 +7,14 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help figures test test-fast notebooks bench lint clean
+.PHONY: help figures test test-fast test-browser notebooks explore bench lint clean
 
 help:
 	@echo "make figures    run every notebook and redraw figures/"
 	@echo "make test       all tests, every notebook rerun from the first cell"
-	@echo "make test-fast  the tests without the notebooks"
+	@echo "make test-fast  the tests without the notebooks and without a browser"
+	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
+	@echo "make explore    turn the angles of nets in your browser (FILE=surface.obj for your own)"
 	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
 	@echo "make bench      seconds, memory and accuracy of the optimisation, some minutes"
 	@echo "make lint       ruff: format and lint"
@@ -28,10 +30,17 @@ test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook and not browser"
+
+test-browser: $(READY)
+	$(BIN)/python tools/browser.py
+	$(BIN)/python -m pytest -m browser -rs -s
 
 notebooks: $(READY)
 	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb
+
+explore: $(READY)
+	$(BIN)/python -m inetlib.explorer $(if $(FILE),"$(FILE)")
 
 bench: $(READY)
 	$(BIN)/python bench/bench_solver.py

@@ -1,4 +1,4 @@
-"""The command line `inet`: measure, cover, web, optimize, figures.
+"""The command line `inet`: measure, cover, web, optimize, explore, figures.
 
 Wrong input is found before the work begins and becomes one sentence on stderr; a file is
 written only after everything went well.
@@ -13,11 +13,13 @@ import json
 import os
 import sys
 import warnings
+import webbrowser
 from pathlib import Path
 
 import numpy as np
 
 from . import (
+    clean,
     design,
     examples,
     io,
@@ -68,6 +70,7 @@ def main(arguments=None):
         "cover": _cover,
         "web": _web,
         "optimize": _optimize,
+        "explore": _explore,
         "figures": _figures,
     }
     try:
@@ -77,8 +80,8 @@ def main(arguments=None):
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
-        figures = given.command == "figures"
-        return _tell("stopped" + ", nothing was written" * (not figures), STOPPED)
+        quiet = given.command in ("figures", "explore")
+        return _tell("stopped" + ", nothing was written" * (not quiet), STOPPED)
     except BrokenPipeError:  # the reader of our output went away, for example `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
@@ -194,6 +197,26 @@ def _optimize(given):
         "seconds": found.seconds,
     }
     return _finish(given, found.V, Q, polygons, numbers, notes)
+
+
+def _explore(given):
+    surface = given.surface and io.surface(given.surface)
+    if surface:
+        clean.clean(surface.V, surface.F)  # refuses what cannot be covered
+    from .explorer import notebook
+
+    try:
+        from .explorer import serve
+    except ImportError as error:
+        raise ImportError(notebook.MISSING) from error
+    serve.serve(surface, given.surface, given.port, functools.partial(_ready, given.open))
+    return DONE
+
+
+def _ready(browser, address):
+    print(f"Isogonal nets: {address} (Ctrl-C ends it)", flush=True)
+    if browser:
+        webbrowser.open(address)
 
 
 def _figures(given):

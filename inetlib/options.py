@@ -26,6 +26,7 @@ EXAMPLES = {
         "inet web --profile vase --theta 75 --theta0 60 -m 24 -o vase.obj",
         "inet measure vase.obj --theta 75 --theta0 60",
     ],
+    "explore": ["inet explore", "inet explore roof.obj --port 8000 --open"],
     "figures": ["inet figures fig05", "inet figures 3_1 4"],
     "measure": [
         "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
@@ -68,6 +69,7 @@ def parser():
         "cover": (_cover, "cover a surface from a file with a net of two given angles"),
         "web": (_web, "an exact net on a surface of revolution"),
         "optimize": (_optimize, "change a quad mesh into a net with the angles you want"),
+        "explore": (_explore, "turn the angles of a net in the browser, on this machine only"),
         "figures": (_figures, "rerun the notebooks and redraw their figures (in a clone)"),
     }
     for name, (build, words) in builders.items():
@@ -161,6 +163,16 @@ def _optimize(command):
     _write(command, keep=True)
 
 
+def _explore(command):
+    command.add_argument(
+        "surface", nargs="?", help="a surface to cover, as for `inet cover` (without: examples)"
+    )
+    command.add_argument(
+        "--port", type=port, metavar="N", help="of the address (8765, or the next that is free)"
+    )
+    command.add_argument("--open", action="store_true", help="open the page in a browser")
+
+
 def _figures(command):
     command.add_argument(
         "names", nargs="*", help="beginnings of notebook names, or figures; none: all"
@@ -252,6 +264,15 @@ def whole(text):
     Paper: Sec. 6 (command line; beyond the paper).
     """
     return int(_number(text, lambda x: x >= 1 and x == int(x), "a whole number from 1 upwards"))
+
+
+def port(text):
+    """A whole number that a port of this machine can have, 0 for any that is free.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    words = "a whole number from 0 to 65535"
+    return int(_number(text, lambda x: 0 <= x <= 65535 and x == int(x), words))
 
 
 def _number(text, allowed, words):

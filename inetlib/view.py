@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 import PIL.Image
 
-from . import mesh, plot
+from . import explorer, mesh, plot
 
 SIZE = (600, 460)  # pixels
 COLOURS = plot.COLOURS | {"face": plot.PALE}
@@ -139,19 +139,30 @@ def picture(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5)):
 def show(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None):
     """The `scene` for a reader: to be turned by hand, or as a still IPython Image.
 
-    live: True, False, or by default True when there is a display and a person before it (a
-    JupyterLab session or a script); a notebook that a tool runs stores a still picture.
+    live: True, False, or by default True when there is a person before it: in a JupyterLab
+    session, where the net becomes a page of `explorer` that the browser draws (in its own
+    colours and widths, with the families that have curves), or a script with a display.  A
+    notebook that a tool runs stores a still picture.
 
     Paper: Figs. 7-13 (scenes).
     """
+    notebook = "ipykernel" in sys.modules
     if live is None:
-        person = "ipykernel" not in sys.modules or "JPY_SESSION_NAME" in os.environ
-        live = person and not _headless()
-    if live:
+        live = explorer.person() if notebook else not _headless()
+    if live and not notebook:
         return scene(V, Q, families, colours, width, view, live=True).show()
-    from IPython.display import Image
+    still = _png(picture(V, Q, families, colours, width, view)) if available()[0] else None
+    names = mesh.Families._fields if families is None else families._asdict().items()
+    if families is not None:
+        names = [name for name, lines in names if len(lines)]
+    if still is None and not live:
+        raise RuntimeError(available()[1])
+    return explorer.show_net(V, Q, names, view, live=live, picture=still)
 
-    still = PIL.Image.fromarray(picture(V, Q, families, colours, width, view))
+
+def _png(image):
+    """The bytes of a small file with an RGB picture."""
     file = io.BytesIO()
-    still.quantize(192, dither=PIL.Image.Dither.NONE).save(file, format="png", optimize=True)
-    return Image(data=file.getvalue(), format="png")
+    small = PIL.Image.fromarray(image).quantize(192, dither=PIL.Image.Dither.NONE)
+    small.save(file, format="png", optimize=True)
+    return file.getvalue()

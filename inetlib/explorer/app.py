@@ -267,7 +267,7 @@ class App:
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade)
         self.view.update()
         self._look_if_lost()
-        state.numbers = _texts(session)
+        state.numbers = plates.numbers(session.numbers(), session.shown)
         state.histogram_svg = plates.histograms(
             *session.deviations(), (session.shown.theta, session.shown.theta0)
         )
@@ -284,22 +284,3 @@ class App:
 
 def _extent(V):
     return (V.min(axis=0) + V.max(axis=0)) / 2, float(abs(V - V.mean(axis=0)).max())
-
-
-def _texts(session):
-    """The numbers of the net as the page shows them."""
-    n, shown = session.numbers(), session.shown
-    return {
-        "quads": f"{n.quads:,}".replace(",", "\u2009"),
-        "lam": f"{n.lam:.5g}",
-        "mu": f"{n.mu:.5g}",
-        "mean_theta": f"{n.mean_theta:.6f}",
-        "mean_theta0": f"{n.mean_theta0:.6f}",
-        "theta_off": plates.short(n.theta_off),
-        "theta0_off": plates.short(n.theta0_off),
-        "flips": str(n.flips),
-        "size_low": plates.short(n.size_low, 3),
-        "size_high": plates.short(n.size_high, 3),
-        "theta": f"{shown.theta:.10g}",
-        "theta0": f"{shown.theta0:.10g}",
-    }

@@ -10,7 +10,10 @@ window.inet = {
     return box.width > 0 && box.height > 0 ? box.width / box.height : 1;
   },
   link(query) {
-    window.history.replaceState(null, "", `${window.location.pathname}?${query}`);
+    // Browsers count such changes: one when the values have come to rest.
+    clearTimeout(this.resting);
+    const change = () => window.history.replaceState(null, "", `${window.location.pathname}?${query}`);
+    this.resting = setTimeout(change, 250);
   },
   copy(text, what) {
     const done = () => window.trame.state.set("alert", `${what} copied`);

@@ -119,6 +119,27 @@ def short(x, digits=2):
     return text.replace("-", "\u2212")
 
 
+def numbers(n, shown):
+    """`session.Numbers` as the page shows them: a dict of texts; shown: the choice they are of.
+
+    Paper: Sec. 4.1 (explorer).
+    """
+    return {
+        "quads": f"{n.quads:,}".replace(",", "\u2009"),
+        "lam": f"{n.lam:.5g}",
+        "mu": f"{n.mu:.5g}",
+        "mean_theta": f"{n.mean_theta:.6f}",
+        "mean_theta0": f"{n.mean_theta0:.6f}",
+        "theta_off": short(n.theta_off),
+        "theta0_off": short(n.theta0_off),
+        "flips": str(n.flips),
+        "size_low": short(n.size_low, 3),
+        "size_high": short(n.size_high, 3),
+        "theta": f"{shown.theta:.10g}",
+        "theta0": f"{shown.theta0:.10g}",
+    }
+
+
 # --- pieces of SVG ------------------------------------------------------------------------
 
 

@@ -36,6 +36,8 @@ class Scene:
         solid = self.plotter.add_mesh(self.faces, ambient=0.35, diffuse=0.7, **colours)
         solid.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # curves lie in front
         self.actor = self.plotter.add_mesh(self.curves, lighting=False, **colours)
+        for actor in (solid, self.actor):  # no table of colours need travel
+            actor.mapper.lookup_table = pyvista.LookupTable(n_values=2)
         self._known = self._layout = None
 
     def show(self, V, Q, choice, dark=False, shade=None):

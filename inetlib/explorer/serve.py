@@ -9,9 +9,13 @@ Paper: Sec. 3-6 (explorer; beyond the paper).
 import asyncio
 import os
 import secrets
+import signal
+from contextlib import suppress
+from pathlib import Path
 from urllib.parse import urlsplit
 
 from aiohttp import WSMsgType, web
+from trame_client.module import vue3
 
 from .app import App
 
@@ -23,12 +27,17 @@ os.environ.setdefault("TRAME_ARGS", "--server")  # trame must not read our comma
 
 
 class Door:
-    """A web server on the loopback interface; `app(name)` makes the app of a tab."""
+    """A web server on the loopback interface: an app for every tab.
 
-    def __init__(self, app=App, allowed=LOCAL):
-        self.app, self.allowed, self.port = app, allowed, None
-        self.tabs = set()
-        self._runner = None
+    surface, path: of a file, for every tab (see `session.Session`); nets: {key: (V, Q)} of nets
+    that are given, each at the address net/KEY/index.html; guarded: whether requests for other
+    hosts and from other sites are refused.
+    """
+
+    def __init__(self, surface=None, path=None, guarded=True):
+        self.options = {"surface": surface, "path": path}
+        self.guarded, self.port, self.nets, self.tabs = guarded, None, {}, set()
+        self._runner = self._www = None
 
     async def open(self, port=None):
         """Listen: the port.  port None: the usual one, or the next that is free; 0: any.
@@ -38,26 +47,32 @@ class Door:
         Paper: Sec. 3-6 (explorer).
         """
         application = web.Application(middlewares=[self._guard])
-        pages = self.app(f"pages{secrets.token_hex(8)}")
-        routes = [web.get("/", _index), web.get("/ws", self._tab)]
-        folders = {f"/{name}": folder for name, folder in pages.server.serve.items()}
-        pages.server.enable_module(_client())
-        folders["/"] = pages.server._www
+        pages = App("pages")
+        pages.server.enable_module(vue3)
+        self._www = Path(pages.server._www)
+        folders = {name: _folder(folder) for name, folder in pages.server.serve.items()}
         pages.close()
-        for name in sorted(folders, reverse=True):
-            routes.append(web.static(name, _folder(folders[name])))
+        routes = [
+            web.get("/", self._index),
+            web.get("/ws", self._tab),
+            web.get("/net/{key}/ws", self._tab),
+            web.get("/net/{key}/index.html", self._net),
+            web.get("/net/{key}/{rest:.+}", _up),
+            *(web.static(f"/{name}", folder) for name, folder in folders.items()),
+            web.static("/", self._www),
+        ]
         application.add_routes(routes)
         self._runner = web.AppRunner(application, access_log=None, shutdown_timeout=2)
         await self._runner.setup()
         for candidate in [port] if port is not None else [*range(PORT, PORT + MORE), 0]:
             try:
-                site = web.TCPSite(self._runner, HOST, candidate)
-                await site.start()
+                await web.TCPSite(self._runner, HOST, candidate).start()
                 break
             except OSError:
                 if port is not None:
+                    await self._runner.cleanup()
                     raise
-        self.port = site._server.sockets[0].getsockname()[1]
+        self.port = self._runner.addresses[0][1]
         return self.port
 
     async def close(self):
@@ -71,21 +86,38 @@ class Door:
         if self._runner is not None:
             await self._runner.cleanup()
 
+    async def _index(self, request):
+        query = f"?{request.query_string}" if request.query_string else ""
+        raise web.HTTPFound(f"index.html{query}")
+
+    async def _net(self, request):
+        self._known(request)
+        return web.FileResponse(self._www / "index.html")
+
+    def _known(self, request):
+        key = request.match_info["key"]
+        if key not in self.nets:
+            raise web.HTTPNotFound(text="this net is gone: run the cell of the notebook again")
+        return self.nets[key]
+
     @web.middleware
     async def _guard(self, request, handler):
         """Refuse other hosts (rebound names) and other sites (their scripts)."""
+        if not self.guarded:
+            return await handler(request)
         origin = request.headers.get("Origin")
         host = urlsplit(f"//{request.host}").hostname
         same = origin is None or urlsplit(origin).netloc == request.host
-        if host not in self.allowed or not same:
+        if host not in LOCAL or not same:
             raise web.HTTPForbidden(text="only pages of this address are served, on this machine")
         return await handler(request)
 
     async def _tab(self, request):
         """A browser tab: its app lives as long as the connection."""
+        net = self._known(request) if "key" in request.match_info else None
         socket = web.WebSocketResponse(max_msg_size=MESSAGE, heartbeat=30)
         await socket.prepare(request)
-        app = self.app(secrets.token_hex(16), **_options(request))
+        app = App(secrets.token_hex(16), net=net, **self.options)
         entry = app, socket
         self.tabs.add(entry)
         task = app.server.start(backend="generic", exec_mode="task")
@@ -109,37 +141,34 @@ class Door:
         return socket
 
 
-def _options(request):
-    return {}
-
-
-async def _index(request):
-    query = f"?{request.query_string}" if request.query_string else ""
-    raise web.HTTPFound(f"index.html{query}")
-
-
-def _client():
-    from trame_client.module import vue3
-
-    return vue3
-
-
 def _folder(value):
     return value[0] if isinstance(value, (list, tuple)) else value
 
 
-def serve(app, port=None, ready=print):
-    """Serve until SIGINT or SIGTERM; ready(address) is called once.
+def _up(request):
+    """The files of a given net's page are those of the explorer."""
+    rest = request.match_info["rest"]
+    raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
+
+
+def serve(surface=None, path=None, port=None, ready=print):
+    """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
+
+    surface, path: `io.Surface` of a file and its name, or None; port: None for the usual one or
+    the next that is free, 0 for any.  OSError when the port is taken.
 
     Paper: Sec. 3-6 (explorer).
     """
 
     async def run():
-        door = Door(app)
+        door, end = Door(surface, path), asyncio.Event()
+        await door.open(port)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with suppress(NotImplementedError):  # on Windows Ctrl-C is a KeyboardInterrupt
+                asyncio.get_running_loop().add_signal_handler(number, end.set)
         try:
-            await door.open(port)
             ready(f"http://{HOST}:{door.port}/")
-            await asyncio.Event().wait()
+            await end.wait()
         finally:
             await door.close()
 

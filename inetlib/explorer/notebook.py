@@ -1,0 +1,121 @@
+"""The explorer in a notebook: live for a person, a picture where a tool runs the notebook.
+
+Paper: Sec. 3-6 (explorer; beyond the paper).
+"""
+
+import asyncio
+import base64
+import os
+import secrets
+import sys
+import threading
+
+import numpy as np
+
+from . import choices
+from .session import Session
+
+MISSING = "the explorer needs packages of the extra `view`: pip install -e '.[view]'"
+TOP, ROUND = (-np.pi / 2, np.pi / 2), (-0.9, 0.45)  # azimuth and elevation of pictures
+_lock = threading.Lock()
+_door = None
+
+
+class Live:
+    """A page in a notebook's output, and the picture that is left of it elsewhere.
+
+    Where the page cannot be had, because the kernel has ended or the notebook is only read,
+    the browser shows the picture.
+    """
+
+    def __init__(self, address, picture, height):
+        self.address, self.picture, self.height = address, picture, height
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        data = base64.b64encode(self.picture).decode()
+        image = f'<img alt="the net" style="max-width: 100%" src="data:image/png;base64,{data}">'
+        style = f"width: 100%; height: {self.height}px; border: 1px solid #8888"
+        page = f'<object type="text/html" data="{self.address}" style="{style}">{image}</object>'
+        return {"text/html": page, "image/png": data, "text/plain": self.address}
+
+
+def show(height=640, live=None, **values):
+    """The explorer in a notebook: `explorer.show(kind="revolution", theta=75, theta0=60)`.
+
+    values: those of `choices.Choice`, angles in degrees; ValueError for what is no such value.
+    live: True, False, or by default True where a person runs the notebook.  Returns a `Live`
+    page, or a still IPython Image.
+
+    Paper: Sec. 3-6 (explorer; beyond the paper).
+    """
+    session = Session()
+    if problems := session.change(**values):
+        raise ValueError("; ".join(problems))
+    if session.must_search:
+        session.search(session.begin())
+    else:
+        session.construct()
+    if session.V is None:
+        raise ValueError(session.problem)
+    picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
+    return _shown(f"?{choices.link(session.choice)}", None, picture, height, live)
+
+
+def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, live=None, picture=None):
+    """A net in a notebook, to be turned by hand, with the numbers of the explorer beside it.
+
+    V: (n, 3), Q: (f, 4); families: names; sight: azimuth and elevation of the still picture,
+    radians; picture: another one, PNG bytes.  Returns as `show`.
+
+    Paper: Sec. 3-6 (explorer; beyond the paper).
+    """
+    session = Session(net=(V, Q))
+    session.change(families=families)
+    picture = picture or session.save(".png", *sight)
+    query = "?families=" + ",".join(session.choice.families)
+    return _shown(query, (session.V, session.Q), picture, height, live)
+
+
+def person():
+    """Whether somebody runs this notebook by hand: a kernel of a Jupyter server has a name.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
+
+
+def _shown(query, net, picture, height, live):
+    if not (person() if live is None else live):
+        from IPython.display import Image
+
+        return Image(data=picture, format="png")
+    door = _open_door()
+    page = "index.html"
+    if net is not None:
+        key = secrets.token_hex(8)
+        door.nets[key] = net
+        page = f"net/{key}/index.html"
+    return Live(f"{_address(door.port)}{page}{query}", picture, height)
+
+
+def _address(port):
+    """Where the browser of a notebook finds a port of this machine."""
+    hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
+    return f"{hub}proxy/{port}/" if hub else f"http://127.0.0.1:{port}/"
+
+
+def _open_door():
+    """One server a process, in a thread of its own, that ends with the process."""
+    global _door
+    with _lock:
+        if _door is None:
+            try:
+                from .serve import Door
+            except ImportError as error:
+                raise ImportError(MISSING) from error
+            guarded = "JUPYTERHUB_SERVICE_PREFIX" not in os.environ  # the hub is a guard itself
+            door, loop = Door(guarded=guarded), asyncio.new_event_loop()
+            threading.Thread(target=loop.run_forever, daemon=True).start()
+            asyncio.run_coroutine_threadsafe(door.open(0), loop).result(60)
+            _door = door
+    return _door
