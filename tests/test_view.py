@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.image import imread
 
-from inetlib import mesh, plot, view
+from inetlib import explorer, mesh, plot, view
 
 V = np.array([[i + 0.3 * j, j, 0.2 * i * j] for i in range(4) for j in range(4)], dtype=float)
 Q = mesh.grid_quads(3, 3)
@@ -125,19 +125,22 @@ def test_egl_is_asked_for_on_linux_without_a_display(monkeypatch, platform, disp
 @pytest.mark.parametrize(
     ("kernel", "session", "display", "live"),
     [
-        (True, True, True, True),
-        (True, False, True, False),  # nbclient, nbmake
-        (True, True, False, False),
-        (False, False, True, True),
-        (False, False, False, False),
+        (True, True, True, "page"),
+        (True, True, False, "page"),  # the browser draws: no display is needed here
+        (True, False, True, "still"),  # nbclient, nbmake
+        (False, False, True, "window"),
+        (False, False, False, "still"),
     ],
 )
-def test_show_is_live_for_a_person_with_a_display(monkeypatch, kernel, session, display, live):
-    shown = types.SimpleNamespace(show=lambda: "live")
+def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
+    shown = types.SimpleNamespace(show=lambda: "window")
     monkeypatch.setattr(view, "scene", lambda *_, live=False: shown if live else 1 / 0)
     still = np.full((view.SIZE[1], view.SIZE[0], 3), 77, dtype=np.uint8)
     monkeypatch.setattr(view, "picture", lambda *_: still)
+    monkeypatch.setattr(view, "available", lambda: (True, ""))
     monkeypatch.setattr(view, "_headless", lambda: not display)
+    door = types.SimpleNamespace(port=1, nets={})
+    monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
     monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
     if not session:
         monkeypatch.delenv("JPY_SESSION_NAME")
@@ -145,11 +148,32 @@ def test_show_is_live_for_a_person_with_a_display(monkeypatch, kernel, session, 
     if not kernel:
         monkeypatch.delitem(sys.modules, "ipykernel")
     result = view.show(V, Q)
-    assert (result == "live") is live
-    assert view.show(V, Q, live=True) == "live"
+    assert live == (
+        "window"
+        if result == "window"
+        else {explorer.notebook.Live: "page"}.get(type(result), "still")
+    )
+    forced = view.show(V, Q, live=True)
+    assert isinstance(forced, explorer.notebook.Live) if kernel else forced == "window"
     fixed = view.show(V, Q, live=False)
     decoded = imread(io.BytesIO(fixed.data), format="png")
     np.testing.assert_allclose(decoded[..., :3] * 255, still, atol=1e-4)
+    if live == "page":
+        assert result.picture == fixed.data
+        np.testing.assert_array_equal([W[0] for W in door.nets.values()], [V, V])
+
+
+def test_a_live_page_shows_the_families_that_have_curves(monkeypatch):
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    door = types.SimpleNamespace(port=1, nets={})
+    monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
+    families = mesh.polylines(Q)._replace(u=[], d1=[])
+    page = view.show(V, Q, families, live=True)
+    assert page.address.endswith("?families=v,d2")
+    assert imread(io.BytesIO(page.picture), format="png").std() > 0.05  # drawn without OpenGL
+    with pytest.raises(RuntimeError, match="no OpenGL"):
+        view.show(V, Q, families, live=False)
 
 
 # --- with both ----------------------------------------------------------------------------

@@ -131,6 +131,7 @@ class App:
         Paper: Sec. 6 (explorer).
         """
         self.session.stop()
+        self.state.progress = "stopping \u2026"
 
     def save(self, suffix, camera):
         """The bytes of a file, for the browser to keep; None, and a message, if there is none.

@@ -98,7 +98,7 @@ def grid(choice, name):
 
     Both are rounded, so that the code is short and makes the same net.
 
-    Paper: Sec. 3.3, App. A.2 (explorer).
+    Paper: Sec. 3.3 (explorer).
     """
     centre, radius = DISKS[name]
     lam, mu = parallelogram.ratios(radians(choice.theta), radians(choice.theta0))

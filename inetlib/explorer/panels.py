@@ -210,7 +210,7 @@ def _shown():
 def numbers():
     """The parallelogram, and what there is to say of the net.
 
-    Paper: Lemma 1, Sec. 4.1 (explorer).
+    Paper: Sec. 3.1, Sec. 4.1 (explorer).
     """
     html.H2("Parallelogram")
     html.Div(v_html="parallelogram_svg", classes="ex-plate")

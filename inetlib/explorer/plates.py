@@ -2,7 +2,7 @@
 
 Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2.
 
-Paper: Fig. 1, Sec. 4.1 (explorer).
+Paper: Sec. 3.1, Sec. 4.1 (explorer).
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ def parallelogram(theta, theta0):
     Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
     medial lines, in those of u and v.
 
-    Paper: Lemma 1, Fig. 1.
+    Paper: Sec. 3.1 (explorer).
     """
     shape = corners(theta, theta0)
     low = shape.real.min() + 1j * shape.imag.min()

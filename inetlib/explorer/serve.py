@@ -145,7 +145,7 @@ def _folder(value):
     return value[0] if isinstance(value, (list, tuple)) else value
 
 
-def _up(request):
+async def _up(request):
     """The files of a given net's page are those of the explorer."""
     rest = request.match_info["rest"]
     raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
