@@ -151,7 +151,7 @@ def _checked(choice, name, value):
     if name not in NAMES:
         raise ValueError(f"{name}: there is no such value")
     if name in OPTIONS:
-        if value not in OPTIONS[name]:
+        if not (isinstance(value, str) and value in OPTIONS[name]):
             known = ", ".join(OPTIONS[name])
             raise ValueError(f"{name} = {_short(value)}: one of {known} is wanted")
         return value
@@ -188,7 +188,7 @@ def _number(value, name, bounds):
 
 
 def _radii(value):
-    if value in PROFILES:
+    if isinstance(value, str) and value in PROFILES:
         return PROFILES[value]
     parts = value.split(",") if isinstance(value, str) else list(value)
     if len(parts) != len(HEIGHTS):

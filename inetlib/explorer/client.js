@@ -21,6 +21,9 @@ window.inet = {
     if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, failed);
     else failed();
   },
+  copyLink(query) {
+    this.copy(`${window.location.origin}${window.location.pathname}?${query}`, "link");
+  },
   async save(suffix, mime) {
     const data = await window.trame.trigger("save", [suffix, this.camera()]);
     if (data) window.trame.utils.download(`net${suffix}`, data, mime);

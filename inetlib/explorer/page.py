@@ -64,7 +64,7 @@ def _bar(given):
                 _button("mdi-download", "Save", v_bind="props", classes="in-save")
             _save_items()
         if not given:
-            _button("mdi-link-variant", "Copy link", click="utils.get('inet').copy(link, 'link')")
+            _button("mdi-link-variant", "Copy link", click="utils.get('inet').copyLink(link)")
             _button("mdi-language-python", "Python", click="code_open = true")
         _button("mdi-theme-light-dark", "Light or dark", click="dark = !dark")
         _button("mdi-help-circle-outline", "Help", click="help_open = true")

@@ -43,7 +43,7 @@ def _number(name, label, low=None, high=None, condition=None, disabled=None):
         html.Label(label, v_pre=True)
         _slider(f"{name}", label, low, high, bounds.step, v_model=(name,), **off)
         v3.VTextField(
-            model_value=(f"Number({name}.toPrecision(10))",),
+            model_value=(f"Number(Number({name}).toPrecision(10))",),
             change=f"{name} = $event.target.value",
             suffix=bounds.unit or None,
             inputmode="decimal",

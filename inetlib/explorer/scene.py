@@ -26,7 +26,8 @@ class Scene:
 
     def __init__(self):
         pyvista = view._pyvista()
-        self.plotter = pyvista.Plotter(off_screen=True)
+        self.plotter = pyvista.Plotter(off_screen=True, lighting=None)
+        self.plotter.add_light(pyvista.Light(light_type="headlight"))
         corner = np.eye(3)
         self.faces = pyvista.PolyData(corner, faces=[3, 0, 1, 2])
         self.curves = pyvista.PolyData(corner, lines=[2, 0, 1])

@@ -1,0 +1,124 @@
+"""What the browser tests share: a Chromium, a running explorer, and ways to look at its page."""
+
+import io
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+OPTIONS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+]
+PATIENCE = 30_000  # milliseconds: a busy machine is no failure
+
+
+def start(*words, folder, environment):
+    """(process, address) of `python -m inetlib.explorer --port 0 ...`."""
+    command = [sys.executable, "-m", "inetlib.explorer", "--port", "0", *map(str, words)]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, cwd=folder, env=environment
+    )
+    line = process.stdout.readline()
+    found = re.fullmatch(r"Isogonal nets: (http://127\.0\.0\.1:\d+/) \(Ctrl-C ends it\)\n", line)
+    assert found, line
+    return process, found[1]
+
+
+STILL = """async () => {  // the server answers in order
+  const frame = () => new Promise(requestAnimationFrame);
+  for (let k = 0; k < 3; k += 1) {
+    await frame();
+    await trame.client.getRemote().Trame.lifeCycleUpdate('client_still');
+  }
+  await frame();
+}"""
+
+
+class Reader:
+    """A tab of the explorer, and what a person would do and read there."""
+
+    def __init__(self, page, address, query=""):
+        self.page, self.address, self.errors = page, address, []
+        page.set_default_timeout(PATIENCE)
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+        page.goto(f"{address}?{query}")
+        page.wait_for_selector(".out-flips:not(:empty)")
+        page.wait_for_function("() => window.inet && window.trame")
+        self.settled()
+
+    def settled(self):
+        """Wait until the server has done what it was asked for, and the view shows it."""
+        self.page.evaluate(STILL)
+        self.page.wait_for_function(
+            "() => !trame.state.get('searching') && !trame.state.get('trame__busy')"
+        )
+        self.page.evaluate(STILL)
+
+    def text(self, name):
+        return self.page.inner_text(name).strip()
+
+    def angles(self):
+        """The mean angles as the page shows them, degrees, two texts."""
+        return [self.text(f".out-mean-{name}").rstrip("\u00b0") for name in ("theta", "theta0")]
+
+    def query(self):
+        """The link's parameters."""
+        return self.page.evaluate("trame.state.get('link')")
+
+    def net(self):
+        """V, Q made by the three lines of Python that the page offers."""
+        made = {}
+        exec(self.page.evaluate("trame.state.get('code')"), made)
+        return made["V"], made["Q"]
+
+    def drag(self, name, part):
+        """Drag a slider's thumb to a part of its track, as a hand does."""
+        track = self.page.locator(f".in-{name} .v-slider-track").bounding_box()
+        thumb = self.page.locator(f".in-{name} [role=slider]").bounding_box()
+        y = thumb["y"] + thumb["height"] / 2
+        self.page.mouse.move(thumb["x"] + thumb["width"] / 2, y)
+        self.page.mouse.down()
+        self.page.mouse.move(track["x"] + part * track["width"], y, steps=8)
+        self.page.mouse.up()
+        self.settled()
+
+    def type(self, name, value):
+        field = self.page.locator(f".in-{name} input[inputmode]")
+        field.fill(str(value))
+        field.press("Enter")
+        self.settled()
+
+    def choose(self, name, words):
+        self.page.locator(f".in-{name}").first.click()
+        self.page.locator(".v-overlay__content .v-list-item", has_text=words).click()
+        self.settled()
+
+    def picture(self):
+        """What the view shows: RGB (h, w, 3)."""
+        return image(self.page.locator(".ex-view").screenshot())
+
+
+def image(data):
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
+
+
+def wait_for(true, seconds=20):
+    """Whether something becomes true within some seconds."""
+    end = time.monotonic() + seconds
+    while not true():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.05)
+    return True

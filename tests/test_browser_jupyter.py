@@ -1,0 +1,102 @@
+"""The explorer inside JupyterLab, in a real browser (skipped where there is no Chromium)."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+
+import nbformat
+import numpy as np
+import pytest
+from browsing import OPTIONS, PATIENCE, image
+
+from inetlib import explorer
+
+browser_tests = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+import browser as tool  # noqa: E402  (tools/browser.py)
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        tool.chromium() is None, reason="no Chromium is here: make test-browser installs it"
+    ),
+]
+CELLS = [
+    "from inetlib import explorer, surfaces, view",
+    "explorer.show(kind='revolution', m=12, n=10, theta=75)",
+    "view.show(*surfaces.freeform_patch(8, 8))",
+]
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    with browser_tests.sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=tool.chromium(), args=OPTIONS)
+        yield found
+        found.close()
+
+
+@pytest.fixture
+def lab(tmp_path):
+    """The address of a JupyterLab on this machine, in a folder with one notebook."""
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in CELLS])
+    notebook.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
+    nbformat.write(notebook, tmp_path / "look.ipynb")
+    home = {f"JUPYTER_{k}_DIR": str(tmp_path / k) for k in ("CONFIG", "DATA", "RUNTIME")}
+    environment = os.environ | home | {"IPYTHONDIR": str(tmp_path / "ipython")}
+    environment.pop("JPY_SESSION_NAME", None)
+    options = ["--no-browser", "--ServerApp.ip=127.0.0.1", "--ServerApp.port=0"]
+    options += ["--allow-root", "--IdentityProvider.token=secret", f"--notebook-dir={tmp_path}"]
+    command = [sys.executable, "-m", "jupyter", "lab", *options]
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, cwd=tmp_path, env=environment
+    )
+    for line in process.stderr:
+        if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
+            break
+    yield f"{found[0]}lab/tree/look.ipynb?token=secret"
+    for _ in range(2):  # JupyterLab asks, and takes the second for an answer
+        process.send_signal(signal.SIGINT)
+    process.communicate(timeout=30)
+
+
+def test_jupyterlab_shows_a_live_view(chromium, lab, tmp_path):
+    page = chromium.new_page(viewport={"width": 1280, "height": 900})
+    page.set_default_timeout(2 * PATIENCE)
+    page.goto(lab)
+    page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Cell").first.click()
+    page.get_by_role("menuitem", name="Run", exact=True).click()
+    page.get_by_role("menuitem", name="Run All Cells", exact=True).click()
+    for number, faces in ((1, 120), (2, 64)):
+        output = page.locator(".jp-Cell").nth(number).locator("object")
+        output.wait_for()
+        output.scroll_into_view_if_needed()
+        frame = output.element_handle().content_frame()
+        frame.wait_for_selector(".out-flips:not(:empty)")
+        assert f"Over all {faces} faces" in frame.inner_text(".ex-right")
+        frame.wait_for_function("() => !trame.state.get('trame__busy')")
+        page.wait_for_timeout(500)
+        view = image(frame.locator(".ex-view").screenshot())
+        drawn = np.abs(view - view[-5, 5]).sum(axis=-1) > 30
+        assert 0.03 < drawn.mean() < 0.97
+        assert len(np.unique(view.reshape(-1, 3), axis=0)) > 50
+    page.keyboard.press("Control+s")
+    page.wait_for_timeout(1500)
+    stored = json.loads((tmp_path / "look.ipynb").read_text(encoding="utf-8"))
+    kinds = [set(o["data"]) for cell in stored["cells"][1:] for o in cell["outputs"]]
+    assert len(kinds) == 2 and all("image/png" in k for k in kinds)
+    assert not any("widget" in name for k in kinds for name in k)
+    page.close()
+
+
+def test_where_the_page_is_gone_the_picture_stays(chromium):
+    png = explorer.show(live=False, m=6, n=6).data
+    gone = explorer.notebook.Live("http://127.0.0.1:9/index.html", png, 400)
+    page = chromium.new_page()
+    page.set_content(gone._repr_mimebundle_()["text/html"])
+    page.wait_for_function("() => document.images[0].complete")
+    seen = image(page.locator("img").screenshot())
+    assert len(np.unique(seen.reshape(-1, 3), axis=0)) > 50
+    page.close()
