@@ -151,13 +151,14 @@ def show(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live
         live = explorer.person() if notebook else not _headless()
     if live and not notebook:
         return scene(V, Q, families, colours, width, view, live=True).show()
-    still = _png(picture(V, Q, families, colours, width, view)) if available()[0] else None
-    names = mesh.Families._fields if families is None else families._asdict().items()
+    drawn = V, Q, families, colours, width, view
+    if not live:
+        return explorer.still(_png(picture(*drawn)))
+    still = _png(picture(*drawn)) if available()[0] else None  # explorer draws one without OpenGL
+    names = mesh.Families._fields
     if families is not None:
-        names = [name for name, lines in names if len(lines)]
-    if still is None and not live:
-        raise RuntimeError(available()[1])
-    return explorer.show_net(V, Q, names, view, live=live, picture=still)
+        names = [name for name in names if len(getattr(families, name))]
+    return explorer.show_net(V, Q, names, view, picture=still)
 
 
 def _png(image):

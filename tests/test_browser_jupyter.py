@@ -62,6 +62,16 @@ def lab(tmp_path):
     process.communicate(timeout=30)
 
 
+def frame_of(page, address):
+    """The frame with the page of an <object>, when the browser has begun it."""
+    for _ in range(200):
+        for frame in page.frames:
+            if frame.url.partition("?")[0] == address.partition("?")[0]:
+                return frame
+        page.wait_for_timeout(100)
+    raise AssertionError(f"no frame {address} among {[frame.url for frame in page.frames]}")
+
+
 def test_jupyterlab_shows_a_live_view(chromium, lab, tmp_path):
     page = chromium.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(2 * PATIENCE)
@@ -73,11 +83,12 @@ def test_jupyterlab_shows_a_live_view(chromium, lab, tmp_path):
         output = page.locator(".jp-Cell").nth(number).locator("object")
         output.wait_for()
         output.scroll_into_view_if_needed()
-        frame = output.element_handle().content_frame()
+        frame = frame_of(page, output.get_attribute("data"))
         frame.wait_for_selector(".out-flips:not(:empty)")
         assert f"Over all {faces} faces" in frame.inner_text(".ex-right")
         frame.wait_for_function("() => !trame.state.get('trame__busy')")
         page.wait_for_timeout(500)
+        page.screenshot(path=f"/tmp/lab{number}.png")
         view = image(frame.locator(".ex-view").screenshot())
         drawn = np.abs(view - view[-5, 5]).sum(axis=-1) > 30
         assert 0.03 < drawn.mean() < 0.97

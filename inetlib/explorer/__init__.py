@@ -10,3 +10,4 @@ Paper: Sec. 3-6 (explorer; beyond the paper).
 from .notebook import person as person
 from .notebook import show as show
 from .notebook import show_net as show_net
+from .notebook import still as still

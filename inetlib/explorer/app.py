@@ -38,7 +38,15 @@ class App:
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
-        for call in (self.arrive, self.fit, self.from_above, self.from_side, self.run, self.stop):
+        for call in (
+            self.arrive,
+            self.fit,
+            self.from_above,
+            self.from_side,
+            self.refit,
+            self.run,
+            self.stop,
+        ):
             self.server.trigger(call.__name__)(call)
         self.server.trigger("save")(self.save)
 
@@ -159,6 +167,15 @@ class App:
         kind = "cover" if self.session.given else self.session.choice.kind
         flat = kind == "plane" or (self.session.V is not None and not self.session.V[:, 2].any())
         self._look(scene.VIEWS["plane"] if flat else scene.VIEWS[kind])
+
+    def refit(self, aspect):
+        """The first scene is there: see the whole net from where it was to be seen.
+
+        Paper: Sec. 3-6 (explorer).
+        """
+        self.aspect = float(aspect)
+        if self.sight is not None:
+            self._look(self.sight)
 
     def from_above(self, aspect=None):
         """See the whole net from above.

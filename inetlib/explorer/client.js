@@ -55,6 +55,12 @@ window.inet = {
     else return;
     event.preventDefault();
   },
+  loads: 0,
+  loaded() {
+    // A camera that came before the first scene was there is lost.
+    this.loads += 1;
+    if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
+  },
   arrive() {
     const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
     window.trame.trigger("arrive", [window.location.search, dark, this.place()]);

@@ -58,14 +58,17 @@ def show(height=640, live=None, **values):
     if session.V is None:
         raise ValueError(session.problem)
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
-    return _shown(f"?{choices.link(session.choice)}", None, picture, height, live)
+    if not (person() if live is None else live):
+        return still(picture)
+    address = f"{_address(_open_door().port)}index.html?{choices.link(session.choice)}"
+    return Live(address, picture, height)
 
 
-def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, live=None, picture=None):
-    """A net in a notebook, to be turned by hand, with the numbers of the explorer beside it.
+def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
+    """A net as a `Live` page of a notebook, with the numbers of the explorer beside it.
 
     V: (n, 3), Q: (f, 4); families: names; sight: azimuth and elevation of the still picture,
-    radians; picture: another one, PNG bytes.  Returns as `show`.
+    radians; picture: another one, PNG bytes.
 
     Paper: Sec. 3-6 (explorer; beyond the paper).
     """
@@ -73,7 +76,19 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, live=None, pict
     session.change(families=families)
     picture = picture or session.save(".png", *sight)
     query = "?families=" + ",".join(session.choice.families)
-    return _shown(query, (session.V, session.Q), picture, height, live)
+    door, key = _open_door(), secrets.token_hex(8)
+    door.nets[key] = session.V, session.Q
+    return Live(f"{_address(door.port)}net/{key}/index.html{query}", picture, height)
+
+
+def still(picture):
+    """A still IPython Image of PNG bytes.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    from IPython.display import Image
+
+    return Image(data=picture, format="png")
 
 
 def person():
@@ -82,20 +97,6 @@ def person():
     Paper: Sec. 3-6 (explorer).
     """
     return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
-
-
-def _shown(query, net, picture, height, live):
-    if not (person() if live is None else live):
-        from IPython.display import Image
-
-        return Image(data=picture, format="png")
-    door = _open_door()
-    page = "index.html"
-    if net is not None:
-        key = secrets.token_hex(8)
-        door.nets[key] = net
-        page = f"net/{key}/index.html"
-    return Live(f"{_address(door.port)}{page}{query}", picture, height)
 
 
 def _address(port):

@@ -103,7 +103,11 @@ def _view(plotter):
             aria_label="the net; arrow keys turn it, plus and minus zoom, F fits it",
             keydown="utils.get('inet').keys($event)",
         ):
-            view = VtkLocalView(plotter.render_window, ref="view")
+            view = VtkLocalView(
+                plotter.render_window,
+                ref="view",
+                after_scene_loaded="utils.get('inet')?.loaded()",
+            )
             _tools()
         _status()
     return view

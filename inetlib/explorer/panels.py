@@ -214,10 +214,9 @@ def numbers():
     """
     html.H2("Parallelogram")
     html.Div(v_html="parallelogram_svg", classes="ex-plate")
-    html.Div(
-        f"{LAM}&emsp; {MU}",
-        classes="ex-note text-center out-ratios",
-    )
+    with html.Div(classes="ex-note ex-ratios out-ratios"):
+        html.Span(LAM)
+        html.Span(MU)
     html.H2("Over all {{ numbers.quads }} faces")
     with html.Table(classes="ex-numbers"):
         with html.Tr():
