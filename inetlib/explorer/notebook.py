@@ -59,7 +59,7 @@ def show(height=640, live=None, **values):
         raise ValueError(session.problem)
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
     if not (person() if live is None else live):
-        return still(picture)
+        return still(picture, width=640)
     address = f"{_address(_open_door().port)}index.html?{choices.link(session.choice)}"
     return Live(address, picture, height)
 
@@ -81,14 +81,14 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
     return Live(f"{_address(door.port)}net/{key}/index.html{query}", picture, height)
 
 
-def still(picture):
-    """A still IPython Image of PNG bytes.
+def still(picture, width=None):
+    """A still IPython Image of PNG bytes, shown so many pixels wide.
 
     Paper: Sec. 3-6 (explorer).
     """
     from IPython.display import Image
 
-    return Image(data=picture, format="png")
+    return Image(data=picture, format="png", width=width)
 
 
 def person():
