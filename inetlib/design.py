@@ -143,18 +143,18 @@ def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
         close = not result.converged and _deviation(result) < FINE
         if close and options is not POLISH and not stopped:
             result = solve(result.V, POLISH)
-        if stopped:
-            return result.V, False, result.message
         off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
         grown = not 1 / GROWN < area_of(result.V, layer.Q) / area < GROWN
         key = grown, not result.converged, off if result.converged else _deviation(result)
         if best is None or key < best[0]:
             best = key, result
-        if not grown and result.converged and off <= AWAY:
+        if stopped or (not grown and result.converged and off <= AWAY):
             break
     result = best[1]
     if best[0][0]:
         return result.V, False, f"the net has folded or collapsed; {result.message}"
+    if stopped and not (result.converged or "stopped" in result.message):
+        return result.V, False, f"stopped by the caller; the best net so far: {result.message}"
     return result.V, result.converged, result.message
 
 

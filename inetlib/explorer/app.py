@@ -140,6 +140,9 @@ class App:
         """
         self.session.stop()
         self.state.progress = "stopping \u2026"
+        if self.session.run is None and self._search is not None:  # it has not begun
+            self._search.cancel()
+            self.state.searching = False
 
     def save(self, suffix, camera):
         """The bytes of a file, for the browser to keep; None, and a message, if there is none.
@@ -229,7 +232,10 @@ class App:
             await work
         except Exception as error:
             traceback.print_exc()
+            self.session.stop()
+            self.session.run = None
             with self.state:
+                self.state.searching = False
                 self.state.problem = f"something went wrong: {error}"
 
     async def _refresh(self):

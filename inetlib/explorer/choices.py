@@ -173,7 +173,7 @@ def _short(value):
 def _number(value, name, bounds):
     try:
         number = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = float("nan")
     inside = bounds.low < number < bounds.high if bounds.open else True
     whole = number == int(number) if bounds.whole and isfinite(number) else True
@@ -190,7 +190,7 @@ def _number(value, name, bounds):
 def _radii(value):
     if isinstance(value, str) and value in PROFILES:
         return PROFILES[value]
-    parts = value.split(",") if isinstance(value, str) else list(value)
+    parts = _parts(value)
     if len(parts) != len(HEIGHTS):
         raise ValueError(
             f"radii: {len(HEIGHTS)} numbers, or one of {', '.join(PROFILES)}, are wanted"
@@ -198,9 +198,15 @@ def _radii(value):
     return tuple(_number(part, "radius", RANGES["radius"]) for part in parts)
 
 
+def _parts(value, otherwise=()):
+    """The parts of a text with commas or of a sequence; of anything else, `otherwise`."""
+    if isinstance(value, str):
+        return value.split(",")
+    return list(value) if isinstance(value, (list, tuple, set, dict)) else list(otherwise)
+
+
 def _families(value):
-    parts = value.split(",") if isinstance(value, str) else list(value)
-    given = {part for part in parts if part}
+    given = {str(part) for part in _parts(value, (None,)) if part != ""}
     if unknown := given - set(FAMILIES):
         raise ValueError(f"families = {_short(sorted(unknown)[0])}: u, v, d1, d2 are wanted")
     return tuple(name for name in FAMILIES if name in given)

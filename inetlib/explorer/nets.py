@@ -189,7 +189,7 @@ def code(choice, path="surface.obj"):
 
     Paper: Sec. 3-6 (explorer; beyond the paper).
     """
-    angles = f"np.radians({choice.theta:.12g}), np.radians({choice.theta0:.12g})"
+    angles = f"np.radians({_exact_text(choice.theta)}), np.radians({_exact_text(choice.theta0)})"
     writers = {
         "plane": _plane_code,
         "isothermal": _isothermal_code,
@@ -198,6 +198,11 @@ def code(choice, path="surface.obj"):
         "cover": _cover_code,
     }
     return "\n".join(writers[choice.kind](choice, angles, path))
+
+
+def _exact_text(x):
+    """A number with all its digits, whole ones without the point."""
+    return repr(x).removesuffix(".0")
 
 
 def _grid_code(choice, angles, name):
@@ -231,7 +236,7 @@ def _isothermal_code(choice, angles, path):
         line = f"z = developable.rolled_grid({angles}, {sizes})"
     else:
         line, rooms = _grid_code(choice, angles, choice.surface), "conformal, surfaces"
-        bend = f"conjugate(np.radians({choice.bend:.12g}))"
+        bend = f"conjugate(np.radians({_exact_text(choice.bend)}))"
         shape = "SPHERE" if choice.surface == "sphere" else bend
         points = f"surfaces.{shape}.point(z.real, z.imag)"
     if choice.moebius:
@@ -258,7 +263,7 @@ def _freeform_code(choice, angles, path):
 def _cover_code(choice, angles, path):
     given = f"examples.{EXAMPLES[choice.source]}()" if choice.source != "file" else ""
     room = "examples" if given else "io"
-    direction = f"np.radians({choice.direction:.12g})"
+    direction = f"np.radians({_exact_text(choice.direction)})"
     yield f"import numpy as np; from inetlib import design, {room}"
     yield f"surface = {given or f'io.surface({str(path)!r})'}"
     options = f"count={choice.quads}, direction={direction}"

@@ -59,7 +59,7 @@ def histograms(theta, theta0, asked):
         ((theta, "\u03b8", asked[0]), (theta0, "\u03b8\u2080", asked[1]))
     ):
         base = 58 + 70 * row
-        count, _ = np.histogram(off, BINS, (-reach, reach))
+        count, _ = np.histogram(np.clip(off, -reach, reach), BINS, (-reach, reach))
         wide = (BOX[0] - 20) / BINS
         for k in np.flatnonzero(count):
             high = max(1.5, 40 * count[k] / count.max())

@@ -105,10 +105,12 @@ class Door:
         """Refuse other hosts (rebound names) and other sites (their scripts)."""
         if not self.guarded:
             return await handler(request)
-        origin = request.headers.get("Origin")
-        host = urlsplit(f"//{request.host}").hostname
-        same = origin is None or urlsplit(origin).netloc == request.host
-        if host not in LOCAL or not same:
+        origin = request.headers.get("Origin", f"http://{request.host}")
+        try:
+            site, host = urlsplit(origin).netloc, urlsplit(f"//{request.host}").hostname
+        except ValueError:
+            site = host = None
+        if host not in LOCAL or site != request.host:
             raise web.HTTPForbidden(text="only pages of this address are served, on this machine")
         return await handler(request)
 

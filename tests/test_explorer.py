@@ -1,0 +1,1168 @@
+"""The explorer without its page: choices and links, nets, sessions, looks, small drawings."""
+
+import importlib.util
+import io as streams
+import re
+import tempfile
+import xml.etree.ElementTree as ET
+from dataclasses import asdict
+from itertools import chain, combinations, pairwise, product
+
+import igl
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.image import imread
+
+from inetlib import examples, io, loxodrome, measure, mesh, parallelogram, plot, surfaces
+from inetlib.explorer import choices, look, nets, plates, session
+from inetlib.explorer.choices import Choice, changed, link, parse
+from inetlib.explorer.session import Session
+
+NUMBERS = {  # the smallest and the largest value; "open": without them; "whole": no fractions
+    "theta": (0, 180, "open"),
+    "theta0": (0, 180, "open"),
+    "m": (3, 150, "whole"),
+    "n": (1, 150, "whole"),
+    "bend": (0, 350, ""),  # of a rolled sheet
+    "px": (-3, 3, ""),
+    "py": (-3, 3, ""),
+    "pz": (-3, 3, ""),
+    "quads": (10, 20000, "whole"),
+    "direction": (-90, 90, ""),
+}
+RADII = (0.05, 3)
+NAMED = {"px": "pole x", "py": "pole y", "pz": "pole z"}
+PICKED = {
+    "kind": ("plane", "isothermal", "revolution", "freeform", "cover"),
+    "map": ("square", "inverse", "exp", "moebius", "identity"),
+    "surface": ("minimal", "sphere", "rolled"),
+    "source": ("roof", "saddle", "shell", "file"),
+}
+SWITCHES = "lock", "moebius", "parallelograms", "shade"
+FAMILIES = "u", "v", "d1", "d2"
+ANGLES = (60, 45), (75, 110), (120, 50)
+EXTREME = tuple(product((0.01, 1, 90, 179, 179.99), repeat=2))
+FOUR = tuple(product((("u", "v"), FAMILIES), (False, True)))  # families, parallelograms
+each_layout = pytest.mark.parametrize(("families", "parallelograms"), FOUR)
+
+
+# --- choices ------------------------------------------------------------------------------
+
+
+def numbers(name):
+    """A strategy: all allowed values of a number."""
+    low, high, how = NUMBERS[name]
+    if how == "whole":
+        return st.integers(low, high)
+    return st.floats(low, high, exclude_min=how == "open", exclude_max=how == "open")
+
+
+ALLOWED = {
+    **{name: st.sampled_from(options) for name, options in PICKED.items()},
+    **{name: numbers(name) for name in NUMBERS},
+    **dict.fromkeys(SWITCHES, st.booleans()),
+    "families": st.lists(st.sampled_from(FAMILIES), unique=True).map(tuple),
+    "radii": st.tuples(*[st.floats(*RADII)] * 7),
+}
+SIMPLE = st.sampled_from([None, True, 0, 1.5, -1, "", "u", "60", "x", 10**400, float("nan")])
+JSON = SIMPLE | st.lists(SIMPLE, max_size=8) | st.lists(st.lists(SIMPLE, max_size=2), max_size=2)
+
+
+def used(choice):
+    """The names of all that a net of this choice, and the sight of it, depends on."""
+    pole = {"px", "py", "pz"} if choice.moebius else set()
+    bend = {"bend"} if choice.surface != "sphere" else set()
+    return {"kind", "theta", "theta0", "lock", "families", "parallelograms", "shade"} | {
+        "plane": {"map", "m", "n"} | ({"px", "py"} if choice.map == "moebius" else set()),
+        "isothermal": {"surface", "m", "n", "moebius"} | pole | bend,
+        "revolution": {"m", "n", "radii"},
+        "freeform": {"m", "n"},
+        "cover": {"source", "quads", "direction"},
+    }[choice.kind]
+
+
+def test_the_tables_of_these_tests_name_every_value_and_option():
+    assert set(ALLOWED) == set(choices.NAMES) == set(asdict(Choice()))
+    for name, options in PICKED.items():
+        assert set(choices.OPTIONS[name]) == set(options)
+    assert len(choices.OPTIONS) == len(PICKED)
+
+
+@given(st.fixed_dictionaries(ALLOWED))
+def test_allowed_values_are_taken_and_a_link_keeps_all_that_the_kind_uses(values):
+    choice, problems = changed(Choice(), **values)
+    assert problems == []
+    for name in set(values) - {"families", "theta0", "bend"}:
+        assert getattr(choice, name) == values[name]
+    assert set(choice.families) == set(values["families"])
+    assert choice.theta0 == values["theta" if values["lock"] else "theta0"]
+    rolled = values["surface"] == "rolled"
+    assert choice.bend == (values["bend"] if rolled else min(values["bend"], 90))
+    for text in (link(choice), "?" + link(choice)):
+        again, problems = parse(text)
+        assert problems == []
+        for name in used(choice):
+            assert getattr(again, name) == getattr(choice, name), name
+    assert link(again) == link(choice)
+
+
+@pytest.mark.parametrize("kind", PICKED["kind"])
+def test_a_link_says_nothing_twice_and_nothing_that_its_kind_does_not_know(kind):
+    names = [pair.split("=")[0] for pair in link(changed(Choice(), kind=kind)[0]).split("&")]
+    assert len(names) == len(set(names))
+    other = set().union(
+        *(used(Choice(kind=k, moebius=True, map="moebius")) for k in PICKED["kind"])
+    )
+    mine = used(Choice(kind=kind, moebius=True, map="moebius"))
+    assert mine <= set(names) and not (other - mine) & set(names)
+
+
+def refused(name, value, before=None):
+    """The sentence by which a value is refused; the choice stays as it was."""
+    before = before or changed(Choice(), theta=50, m=9, surface="rolled", families="u,d2")[0]
+    after, problems = changed(before, **{name: value})
+    assert after == before
+    assert len(problems) == 1 and "\n" not in problems[0] and len(problems[0]) < 160
+    return problems[0]
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_a_wrong_number_is_refused_in_a_sentence_with_its_name_itself_and_the_range(name):
+    low, high, how = NUMBERS[name]
+    outside = [low, high] if how == "open" else [low - 1, high + 1]
+    fractions = [low + 2.5, f"{high - 0.5}"] if how == "whole" else []
+    for value in ["nan", float("inf"), "-inf", "1e999", 1e9, "abc", "", *outside, *fractions]:
+        sentence = refused(name, value)
+        assert sentence.startswith(f"{NAMED.get(name, name)} = {str(value)!r}: ")
+        assert re.findall(r"-?\d+", sentence.split(": ")[1]) == [str(low), str(high)]
+        assert ("whole" in sentence) is (how == "whole")
+
+
+@pytest.mark.parametrize("name", PICKED)
+def test_unknown_options_are_refused_with_all_the_known_ones(name):
+    for value in ("", "cube", "Plane", " plane", "plane,exp"):
+        sentence = refused(name, value)
+        assert sentence.startswith(f"{name} = {value!r}: ")
+        assert all(option in sentence for option in PICKED[name])
+
+
+@pytest.mark.parametrize("name", SWITCHES)
+def test_a_switch_is_on_or_off_and_nothing_else(name):
+    for value in ("", "yes", "2", "-1", "none", 2):
+        assert refused(name, value).startswith(f"{name} = {str(value)!r}: 1 or 0")
+    for text, state in (("1", True), ("true", True), ("0", False), ("False", False)):
+        assert getattr(changed(Choice(), **{name: text})[0], name) is state
+
+
+@pytest.mark.parametrize("value", ["w", "u,w", "u v", ["u", "D1"], ["u,v"]])
+def test_unknown_families_are_refused_with_the_known_ones(value):
+    assert "u, v, d1, d2" in refused("families", value)
+
+
+def test_families_come_in_one_order_and_may_be_none():
+    for some in chain.from_iterable(combinations(FAMILIES, k) for k in range(5)):
+        backwards = some[::-1]
+        for value in (backwards, list(backwards), ",".join(backwards)):
+            assert changed(Choice(), families=value) == (Choice(families=some), [])
+
+
+def test_a_profile_has_seven_radii():
+    for value in chain(*(((1.0,) * k, ",".join(["1"] * k)) for k in (0, 1, 6, 8, 700))):
+        sentence = refused("radii", value)
+        assert "radii" in sentence and "7 numbers" in sentence
+        assert all(name in sentence for name in choices.PROFILES)
+
+
+def test_a_wrong_radius_is_refused_with_the_range():
+    for value in ("0", "0.0499", "3.01", "nan", "-1", "thick", ""):
+        sentence = refused("radii", f"1,1,{value},1,1,1,1")
+        assert repr(value) in sentence and "from 0.05 to 3" in sentence and "radius" in sentence
+
+
+@pytest.mark.parametrize("form", [tuple, list, lambda radii: ",".join(map(str, radii))])
+@pytest.mark.parametrize("name", choices.PROFILES)
+def test_radii_are_taken_as_a_row_a_list_of_the_page_a_text_or_a_name(name, form):
+    radii = choices.PROFILES[name]
+    assert changed(Choice(), radii=form(radii)) == (Choice(radii=radii), [])
+    assert changed(Choice(), radii=name) == (Choice(radii=radii), [])
+
+
+@pytest.mark.parametrize("name", ["colour", "Theta", "", "__class__", "theta "])
+def test_unknown_names_are_refused_by_name(name):
+    assert name in refused(name, "1")
+    choice, problems = parse(f"{name}=1&n=7")
+    assert choice == Choice(n=7) and len(problems) == 1 and repr(name) in problems[0]
+
+
+@pytest.mark.parametrize("name", ALLOWED)
+def test_long_and_hostile_values_are_shortened_and_made_harmless(name):
+    for start in ("9", "x", "<script>alert(1)</script>", "\n\r\x1b[2J", "7,"):
+        sentence = refused(name, (start * 4000)[:9000])
+        assert (
+            name in ("radii", "families")
+            or repr(start)[1:-1] in sentence + " ..."
+            or len(start) > 20
+        )
+        assert sentence.isprintable()
+        problems = parse(f"?{name}={start}" + "z" * 9000)[1]
+        assert len(problems) == 1 and len(problems[0]) < 160
+
+
+def test_a_long_name_in_a_link_is_shortened():
+    choice, problems = parse("x" * 3000 + "=1")
+    assert choice == Choice() and len(problems) == 1 and len(problems[0]) < 60
+
+
+def test_each_wrong_value_has_a_sentence_of_its_own_and_the_good_ones_are_taken():
+    choice, problems = changed(Choice(), theta=0, m="2.5", n="4", kind="cube", shade="1")
+    assert choice == Choice(n=4, shade=True)
+    assert [p.split()[0] for p in problems] == ["theta", "m", "kind"]
+
+
+@given(st.dictionaries(st.sampled_from(sorted(ALLOWED)), JSON, min_size=1))
+def test_whatever_json_a_browser_sends_is_taken_or_refused(values):
+    choice, problems = changed(Choice(), **values)
+    assert len(problems) <= len(values) and all(isinstance(p, str) for p in problems)
+    assert changed(Choice(), **asdict(choice)) == (choice, [])
+
+
+@pytest.mark.parametrize("name", ALLOWED)
+def test_values_of_another_type_are_refused_not_raised(name):
+    for value in (None, [], ["plane"], {}, 10**400, -(10**400), [[1]], [None] * 7):
+        choice, problems = changed(Choice(), **{name: value})
+        if name == "families" and value in ([], {}):
+            assert (choice, problems) == (Choice(families=()), [])
+        else:
+            assert choice == Choice() and len(problems) == 1
+
+
+# --- the lock, and the angle of bending ---------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("locked", "values", "angles", "lock"),
+    [
+        (False, {"lock": True}, (50, 50), True),  # theta leads
+        (False, {"lock": "1", "theta": 80}, (80, 80), True),
+        (False, {"lock": True, "theta0": 80}, (80, 80), True),
+        (False, {"lock": True, "theta": 80, "theta0": 20}, (80, 80), True),
+        (True, {"theta": "80"}, (80, 80), True),
+        (True, {"theta0": "80"}, (80, 80), True),
+        (True, {"theta": 80, "theta0": 20}, (80, 80), True),
+        (True, {"lock": False}, (50, 50), False),
+        (True, {"lock": False, "theta0": 20}, (50, 20), False),
+        (True, {"m": 7}, (50, 50), True),
+        (False, {"theta": 80}, (80, 70), False),
+        (False, {"theta0": 80}, (50, 80), False),
+    ],
+)
+def test_with_the_lock_on_one_angle_takes_the_other_along(locked, values, angles, lock):
+    before = changed(Choice(), theta=50, theta0=50 if locked else 70, lock=locked)[0]
+    after, problems = changed(before, **values)
+    assert problems == []
+    assert (after.theta, after.theta0) == angles and after.lock is lock
+
+
+@pytest.mark.parametrize("name", ["theta", "theta0"])
+def test_a_refused_angle_moves_neither_of_the_locked_ones(name):
+    before = changed(Choice(), theta=50, lock=True)[0]
+    after, problems = changed(before, **{name: 180})
+    assert after == before and len(problems) == 1
+
+
+@given(st.lists(st.fixed_dictionaries({}, optional=ALLOWED), max_size=4))
+def test_locked_angles_are_equal_and_only_sheets_are_bent_beyond_90_degrees(changes):
+    choice = Choice()
+    for values in changes:
+        choice, problems = changed(choice, **values)
+        assert problems == []
+        assert choice.theta == choice.theta0 or not choice.lock
+        assert choice.bend <= (350 if choice.surface == "rolled" else 90)
+        assert choices.limits(choice, "bend")[:2] == (0, 350 if choice.surface == "rolled" else 90)
+
+
+@pytest.mark.parametrize("other", ["minimal", "sphere"])
+def test_the_angle_of_bending_is_clamped_when_the_sheet_is_left(other):
+    bent = changed(Choice(), surface="rolled", bend=300)[0]
+    assert bent.bend == 300
+    assert changed(bent, surface=other)[0].bend == 90
+    assert changed(Choice(surface=other), bend=300)[0].bend == 90
+    assert changed(Choice(surface=other), bend=300, surface="rolled")[0].bend == 300
+    assert changed(bent, theta=20)[0].bend == 300
+
+
+# --- links --------------------------------------------------------------------------------
+
+
+PAIRS = st.lists(st.tuples(st.sampled_from(sorted(ALLOWED)) | st.text(max_size=5), st.text()))
+
+
+@given(st.text() | PAIRS.map(lambda pairs: "?" + "&".join(f"{a}={b}" for a, b in pairs)))
+def test_any_text_at_all_is_read_as_a_choice_and_sentences(text):
+    choice, problems = parse(text)
+    assert all(problem.isprintable() and len(problem) < 160 for problem in problems)
+    assert changed(Choice(), **asdict(choice)) == (choice, [])
+
+
+def test_a_link_changes_the_choice_that_is_there_and_the_last_word_counts():
+    before = changed(Choice(), kind="cover", theta=20, families=("d1",))[0]
+    after, problems = parse("theta=70&theta=71&parallelograms=1", before)
+    assert problems == []
+    assert asdict(after) == asdict(before) | {"theta": 71.0, "parallelograms": True}
+
+
+def test_no_link_is_too_long():
+    choice, problems = parse("&".join(f"a{k}=1" for k in range(100_000)) + "&theta=20")
+    assert choice == Choice() and 0 < len(problems) < 1000  # the rest is not looked at
+
+
+# --- nets that are constructed ------------------------------------------------------------
+
+
+EXACT = {
+    **{f"{name} map": {"map": name} for name in ("identity", "square", "exp")},
+    "rolled": {"kind": "isothermal", "surface": "rolled"},
+    "revolution": {"kind": "revolution"},
+}
+SAMPLED = {
+    "inverse map": {"map": "inverse"},
+    "moebius map": {"map": "moebius", "px": -1.4, "py": 0.6},
+    **{name: {"kind": "isothermal", "surface": name} for name in ("minimal", "sphere")},
+    **{
+        f"{name}, inverted": {"kind": "isothermal", "surface": name, "moebius": True}
+        for name in PICKED["surface"]
+    },
+}
+POLE = {"px": 0.1, "py": 0.1, "pz": 3.0}  # away from all of these surfaces
+CONSTRUCTED = EXACT | SAMPLED
+each_constructed = pytest.mark.parametrize("name", CONSTRUCTED)
+
+
+def built(**values):
+    """A session with the net of these values."""
+    made = Session()
+    assert made.change(**values) == []
+    made.construct()
+    assert made.problem == ""
+    return made
+
+
+def off(V, Q, angles):
+    """The largest deviations of both angles, degrees."""
+    found = np.degrees(measure.angles(V, Q))
+    return np.abs(found - np.reshape(angles, (2, 1))).max(axis=1)
+
+
+def same(words, V, Q):
+    """Whether three lines of Python make exactly this net."""
+    assert len(words.splitlines()) == 3
+    names = {}
+    exec(words, names)
+    return np.array_equal(names["V"], V) and np.array_equal(names["Q"], Q)
+
+
+@pytest.mark.parametrize("angles", ANGLES)
+@pytest.mark.parametrize("name", EXACT)
+def test_exact_nets_have_both_angles_to_a_billionth_of_a_degree(name, angles):
+    found = built(theta=angles[0], theta0=angles[1], m=14, n=11, **EXACT[name])
+    assert off(found.V, found.Q, angles).max() < 1e-9
+    assert found.message.startswith("exact")
+
+
+@pytest.mark.parametrize("angles", ANGLES)
+@pytest.mark.parametrize("name", SAMPLED)
+def test_the_angles_of_sampled_nets_are_off_by_the_square_of_the_edge(name, angles):
+    asked = {"theta": angles[0], "theta0": angles[1]} | POLE | SAMPLED[name]
+    coarse, fine = (built(m=k, n=k, **asked) for k in (24, 48))
+    ratio = off(coarse.V, coarse.Q, angles) / off(fine.V, fine.Q, angles)
+    assert np.all((ratio > 3) & (ratio < 5))
+    assert "exact" not in fine.message
+
+
+@each_constructed
+def test_three_lines_of_python_make_exactly_the_same_net(name):
+    for theta, theta0, m, n, bend in (
+        (60, 60, 3, 1, 0),
+        (33.3, 141.7, 9, 14, 90),
+        (90, 90, 5, 5, 7),
+    ):
+        asked = {"theta": theta, "theta0": theta0, "m": m, "n": n, "bend": bend}
+        found = built(**asked | {"radii": "hourglass"} | POLE | CONSTRUCTED[name])
+        assert same(found.code(), found.V, found.Q)
+        again, problems = parse(found.link())
+        assert problems == []
+        assert np.array_equal(nets.construct(again).V, found.V)
+
+
+@each_constructed
+def test_a_value_with_all_its_digits_is_not_rounded_in_the_code(name):
+    long = {
+        "theta": 60.12345678901234,
+        "theta0": 100 / 3,
+        "bend": 200 / 7,
+        "px": 1 / 7,
+        "pz": 20 / 7,
+    }
+    found = built(**{"m": 5, "n": 5} | CONSTRUCTED[name] | long)
+    assert same(found.code(), found.V, found.Q)
+
+
+@each_constructed
+def test_extreme_angles_make_a_net_or_a_sentence_and_the_former_net_stays(name):
+    made = built(m=6, n=5, **CONSTRUCTED[name])
+    counts = {True: 0, False: 0}
+    for theta, theta0 in EXTREME:
+        former = made.V, made.Q, made.message, made.shown
+        assert made.change(theta=theta, theta0=theta0) == []
+        made.construct()
+        counts[bool(made.problem)] += 1
+        if made.problem:
+            assert made.problem.startswith("no net: ")
+            now = made.V, made.Q, made.message, made.shown
+            assert all(a is b for a, b in zip(former, now, strict=True))
+        else:
+            assert made.shown == made.choice and np.isfinite(made.V).all()
+            assert np.isfinite(measure.angles(made.V, made.Q)).all()
+        assert made.numbers().quads == len(made.Q)
+    assert counts[False] > counts[True]
+
+
+@pytest.mark.parametrize("angles", ANGLES)
+def test_the_grid_fills_the_unit_disk(angles):
+    V = built(map="identity", theta=angles[0], theta0=angles[1], m=12, n=17).V
+    assert np.linalg.norm(V, axis=1).max() == pytest.approx(1, abs=1e-4)  # rounded to 5 digits
+    assert np.abs(V.mean(axis=0)).max() < 1e-4
+
+
+def test_every_map_is_the_one_that_its_name_says():
+    z = {}
+    for name in PICKED["map"]:
+        V = built(map=name, m=8, n=8, px=0.25, py=-1.5).V
+        z[name] = V[:, 0] + 1j * V[:, 1]
+    before = {
+        "square": np.sqrt(z["square"]),  # the disk lies in the right half plane
+        "inverse": 1 / z["inverse"],
+        "moebius": 1 / z["moebius"] + (0.25 - 1.5j),
+        "identity": z["identity"],
+    }
+    for name, back in before.items():
+        steps = np.diff(back.reshape(9, 9), axis=0), np.diff(back.reshape(9, 9), axis=1)
+        assert all(np.abs(d - d[0, 0]).max() < 1e-12 for d in steps), name  # a sheared grid
+    logarithm = np.log(z["exp"]).reshape(9, 9)
+    assert np.abs(np.diff(logarithm, n=2, axis=1)).max() < 1e-12
+
+
+def test_every_surface_is_the_one_that_its_name_says():
+    def points(**values):
+        return built(kind="isothermal", m=9, n=7, **values).V.T
+
+    x, y, z = points(surface="sphere")
+    assert np.abs(x * x + y * y + z * z - 1).max() < 1e-12
+    x, y, z = points(surface="minimal", bend=0)
+    assert np.abs(np.hypot(x, y) - np.cosh(z)).max() < 1e-12
+    x, y, z = points(surface="minimal", bend=90)
+    assert np.abs(x * np.cos(z) + y * np.sin(z)).max() < 1e-12 and np.ptp(z) > 1
+    x, y, z = built(kind="revolution", radii="cone", m=9, n=7).V.T
+    assert np.abs(np.hypot(x, y) - (1.2 - 0.3 * z)).max() < 1e-12
+
+
+@pytest.mark.parametrize("bend", [0, 1, 45, 200, 350])
+@pytest.mark.parametrize("angles", [(60, 60), (110, 50), (90, 140)])
+def test_the_sheet_is_bent_by_its_angle_from_one_side_to_the_other(bend, angles):
+    asked = {"kind": "isothermal", "surface": "rolled", "theta": angles[0], "theta0": angles[1]}
+    x, _, z = built(m=12, n=12, bend=bend, **asked).V.T
+    far = np.argmax(np.abs(x) + z)
+    curvature = 2 * z[far] / (x[far] ** 2 + z[far] ** 2)  # of the circle that touches z = 0 at 0
+    turned = np.degrees(np.ptp(np.arctan2(curvature * x, 1 - curvature * z)))
+    assert turned == pytest.approx(bend, rel=0.02, abs=1e-9)  # the step v changes a little
+
+
+@pytest.mark.parametrize("surface", PICKED["surface"])
+def test_a_moebius_image_is_inverted_in_the_unit_sphere_around_the_pole(surface):
+    asked = {"kind": "isothermal", "surface": surface, "m": 6, "n": 6, **POLE}
+    V, image = built(**asked).V, built(moebius=True, **asked).V
+    pole = np.array(list(POLE.values()))
+    away, found = V - pole, image - pole
+    assert np.allclose(found, away / np.sum(away**2, axis=1, keepdims=True), rtol=1e-9)
+
+
+def test_a_pole_on_a_vertex_and_a_profile_that_crosses_the_axis_are_no_nets():
+    made = built(map="identity", m=4, n=4)
+    on = made.V[7]
+    for values in (
+        {"map": "moebius", "px": on[0], "py": on[1]},
+        {"kind": "revolution", "radii": (2.5, 0.05, 2.5, 0.05, 2.5, 0.05, 2.5)},
+    ):
+        assert made.change(**values) == []
+        made.construct()
+        assert made.problem.startswith("no net: ") and made.V[7] is not None
+        assert np.array_equal(made.V[7], on)
+
+
+# --- nets that are found ------------------------------------------------------------------
+
+
+def searched(seen=None, **values):
+    """A session that has searched the net of these values."""
+    made = Session()
+    assert made.change(**values) == []
+    made.search(made.begin(), seen)
+    assert made.problem == "" and made.run is None
+    return made
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"kind": "freeform", "m": 5, "n": 6}]
+    + [{"kind": "cover", "source": s, "quads": 60, "direction": 20} for s in PICKED["source"][:3]],
+    ids=lambda values: values.get("source", "freeform"),
+)
+def test_three_lines_of_python_find_exactly_the_same_net(values):
+    found = searched(theta=70, theta0=50, **values)
+    assert off(found.V, found.Q, (70, 50)).max() < 1e-8
+    assert found.message.startswith("converged")
+    assert same(found.code(), found.V, found.Q)
+
+
+@pytest.mark.parametrize("name", ["my roof.obj", 'it\'s "mine".ply', "a\\b {c}.off"])
+def test_a_surface_from_a_file_is_covered_and_named_in_the_code(tmp_path, name):
+    path = tmp_path / name
+    io.write(path, *examples.wavy_roof(12))
+    found = Session(io.surface(path), path)
+    assert (found.choice.kind, found.choice.source) == ("cover", "file")
+    found.change(quads=60, theta=80)
+    found.search(found.begin())
+    assert off(found.V, found.Q, (80, 60)).max() < 1e-8
+    assert same(found.code(), found.V, found.Q)
+
+
+def test_the_way_of_a_search_begins_with_the_start_and_rises_one_by_one():
+    way = []
+    found = searched(lambda V, Q, step: way.append((V.copy(), Q, step)), kind="freeform", m=6, n=4)
+    V, Q = surfaces.freeform_patch(6, 4)
+    assert [step for _, _, step in way] == list(range(len(way))) and len(way) > 2
+    assert np.array_equal(way[0][0], V) and all(np.array_equal(R, Q) for _, R, _ in way)
+    best = min(way, key=lambda net: off(net[0], net[1], (60, 60)).max())
+    assert np.array_equal(found.V, best[0])
+    assert found.steps == len(way) - 1
+
+
+@pytest.mark.parametrize("last", [0, 1, 2])
+@pytest.mark.parametrize("values", [{"kind": "freeform", "m": 6, "n": 6}, {"kind": "cover"}])
+def test_a_search_stops_after_the_step_under_way_and_keeps_the_best_net(values, last):
+    made, way = Session(), []
+    made.change(theta=100, theta0=40, quads=60, **values)
+
+    def seen(V, Q, step):
+        way.append((off(V, Q, (100, 40)).max(), V.copy()))
+        if step == last:
+            made.stop()
+
+    made.search(made.begin(), seen)
+    assert len(way) == last + 1 and made.run is None and made.problem == ""
+    assert "stopped" in made.message and made.shown == made.choice
+    assert np.array_equal(made.V, min(way, key=lambda net: net[0])[1])
+
+
+def test_a_run_that_was_stopped_before_it_began_makes_no_step():
+    made, way = Session(), []
+    made.change(kind="freeform", m=4, n=4)
+    run = made.begin()
+    made.stop()
+    assert run.stopped
+    made.search(run, lambda *net: way.append(net))
+    assert way == [] and np.array_equal(made.V, surfaces.freeform_patch(4, 4)[0])
+
+
+def test_what_an_older_run_finds_is_forgotten():
+    made = built(m=4, n=4)
+    former, newer = made.V, []
+    made.change(kind="freeform", m=4, n=4)
+    old = made.begin()
+
+    def seen(V, Q, step):
+        if step == 1:
+            made.change(m=5)
+            newer.append(made.begin())
+        assert made.on_the_way(old, V, Q) is not bool(newer)
+
+    made.search(old, seen)
+    assert old.stopped and made.run is newer[0] and not newer[0].stopped
+    assert len(made.V) == 25 and made.V is not former  # the step that was shown on the way
+    shown = made.V
+    made.search(old)  # over: nothing is taken from it
+    assert made.V is shown and made.run is newer[0]
+    made.search(newer[0])
+    assert len(made.V) == 30 and made.run is None and made.shown.m == 5
+
+
+def test_a_net_on_the_way_is_shown_with_its_step():
+    made, words = Session(), []
+    made.change(kind="freeform", m=4, n=4)
+    run = made.begin()
+
+    def seen(V, Q, step):
+        assert made.on_the_way(run, V, Q) and made.V is V and made.shown == run.choice
+        words.append(made.message)
+
+    made.search(run, seen)
+    assert words == [f"step {k}" for k in range(len(words))] and len(words) > 1
+    assert made.message.startswith("converged")
+
+
+@pytest.mark.parametrize("former", [True, False])
+def test_what_cannot_be_found_becomes_a_problem_and_the_former_net_stays(former):
+    made = built(m=4, n=4) if former else Session()
+    V, message = made.V, made.message
+    made.change(kind="cover", source="file")
+    made.search(made.begin())
+    assert made.problem.startswith("no net: ") and "file" in made.problem and made.run is None
+    assert made.V is V and made.message == message
+    made.change(kind="plane")
+    made.construct()
+    assert made.problem == "" and made.V is not None
+
+
+def test_a_constructed_net_ends_the_search_under_way():
+    made = Session()
+    made.change(kind="freeform", m=4, n=4)
+    run = made.begin()
+    assert made.must_search
+    made.change(kind="plane")
+    made.construct()
+    assert run.stopped and made.run is None and not made.must_search
+    plane = made.V
+    made.search(run)
+    assert made.V is plane
+
+
+# --- what is said of a net ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"map": "inverse"}, {"kind": "isothermal", "surface": "minimal"}, {"kind": "revolution"}],
+)
+def test_the_numbers_agree_with_the_judge_and_with_the_corners(values):
+    found = built(theta=70, theta0=55, m=9, n=6, **values)
+    V, Q, said = found.V, found.Q, found.numbers()
+    theta, theta0 = np.degrees(measure.angles(V, Q))
+    v1, v2, v3, v4 = V[Q].transpose(1, 0, 2)
+    medial = [(v3 + v4 - v1 - v2) / 2, (v4 + v1 - v2 - v3) / 2]
+    sizes = np.linalg.norm(medial, axis=2)
+    assert said.quads == len(Q)
+    assert parallelogram.angles(said.lam, said.mu) == pytest.approx(np.radians([70, 55]))
+    assert (said.mean_theta, said.mean_theta0) == pytest.approx((theta.mean(), theta0.mean()))
+    assert said.theta_off == pytest.approx(np.abs(theta - 70).max(), abs=1e-12)
+    assert said.theta0_off == pytest.approx(np.abs(theta0 - 55).max(), abs=1e-12)
+    assert said.flips == measure.quality(V, Q).flips
+    assert (said.size_low, said.size_high) == pytest.approx((sizes.min(), sizes.max()))
+    for mine, judged in zip(found.deviations(), (theta - 70, theta0 - 55), strict=True):
+        assert np.allclose(mine, judged, atol=1e-12)
+
+
+def test_the_numbers_belong_to_the_net_that_is_shown_and_not_to_the_choice():
+    made = built(map="inverse", theta=70, m=5, n=5)
+    before = made.numbers()
+    made.change(kind="cover", source="file", theta=20)
+    made.search(made.begin())
+    assert made.problem and made.numbers() == before
+
+
+def test_the_worst_face_is_the_darkest():
+    found = built(map="inverse", m=12, n=12)
+    worst = np.abs(found.deviations()).max(axis=0)
+    brightness = found.colours().astype(int).sum(axis=1)
+    assert found.colours().shape == (144, 3) and found.colours().dtype == np.uint8
+    order = np.argsort(worst)
+    assert np.all(np.diff(brightness[order]) <= 0) and brightness[order[0]] > brightness[order[-1]]
+
+
+def test_a_session_without_a_net_says_and_saves_nothing():
+    made = Session()
+    assert made.V is None and made.numbers() is None
+    with pytest.raises(ValueError, match="no net"):
+        made.save(".obj")
+
+
+# --- a net that is given ------------------------------------------------------------------
+
+
+def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles():
+    V, Q = surfaces.freeform_patch(5, 4)
+    made = Session(net=(V, Q))
+    means = [np.degrees(x.mean()) for x in measure.angles(V, Q)]
+    assert (made.choice.theta, made.choice.theta0) == pytest.approx(means)
+    said = made.numbers()
+    assert (said.mean_theta, said.mean_theta0) == pytest.approx(means)
+    assert said.theta_off == pytest.approx(off(V, Q, means)[0])
+    for values in ({"kind": "freeform"}, {"kind": "plane"}, {"theta": 20}):
+        assert made.change(**values) == [] and not made.must_search
+        made.construct()
+        assert made.V is V or np.array_equal(made.V, V)
+        assert np.array_equal(made.Q, Q) and made.numbers() == said
+    assert made.code().startswith("#")
+
+
+@pytest.mark.parametrize("bad", ["shape", "index", "nan"])
+def test_a_given_net_is_checked(bad):
+    V, Q = surfaces.freeform_patch(3, 3)
+    V, Q = {
+        "shape": (V[:, :2], Q),
+        "index": (V[:-1], Q),
+        "nan": (np.where(np.arange(16)[:, None] == 5, np.nan, V), Q),
+    }[bad]
+    with pytest.raises(ValueError):
+        Session(net=(V, Q))
+
+
+# --- saving -------------------------------------------------------------------------------
+
+
+PACKAGES = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
+
+
+def package(suffix):
+    """The package that a kind of file needs; without it the test is skipped."""
+    if suffix in PACKAGES:
+        name = PACKAGES[suffix]
+        return pytest.importorskip(name, reason=f"the package {name} is not installed")
+    return None
+
+
+@pytest.fixture
+def scratch(tmp_path, monkeypatch):
+    """The folder of temporary files."""
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def vase():
+    """A small web."""
+    return built(kind="revolution", m=7, n=4)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp"])
+def test_saved_nets_come_back_from_their_bytes_bit_by_bit(vase, scratch, tmp_path, suffix):
+    package(suffix)
+    path = tmp_path / f"back{suffix}"
+    path.write_bytes(vase.save(suffix))
+    V, Q = io.read(path)
+    assert np.array_equal(V, vase.V) and np.array_equal(Q, vase.Q)
+    assert list(scratch.iterdir()) == []
+
+
+def test_a_saved_glb_has_the_points_of_the_net_as_float32(vase, scratch, tmp_path):
+    path = tmp_path / "back.glb"
+    path.write_bytes(vase.save(".glb"))
+    V, F = io.read(path)
+    assert F.shape == (2 * len(vase.Q), 3)
+    near, _, _ = igl.point_mesh_squared_distance(vase.V, V, F)
+    assert np.sqrt(near).max() < 1e-6
+    assert list(scratch.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".dxf", ".3dm"])
+def test_saved_drawings_open_in_the_programs_of_others(vase, scratch, tmp_path, suffix):
+    reader = package(suffix)
+    path = tmp_path / f"back{suffix}"
+    path.write_bytes(vase.save(suffix))
+    if suffix == ".dxf":
+        meshes = reader.readfile(path).modelspace().query("MESH")
+        V = np.array([tuple(v) for v in meshes[0].vertices])
+    else:
+        objects = [o.Geometry for o in reader.File3dm.Read(str(path)).Objects]
+        found = next(g for g in objects if isinstance(g, reader.Mesh)).Vertices
+        V = np.array([[found[k].X, found[k].Y, found[k].Z] for k in range(len(found))])
+    assert np.allclose(V, vase.V, atol=1e-6)
+    assert list(scratch.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".vtp", ".glb"])
+def test_formats_with_a_place_for_curves_get_them(vase, tmp_path, suffix):
+    package(suffix)
+    bare = tmp_path / f"bare{suffix}"
+    io.write(bare, vase.V, vase.Q)
+    assert len(vase.save(suffix)) > len(bare.read_bytes())
+
+
+@each_layout
+def test_saved_drawings_are_xml_and_the_same_each_time(scratch, families, parallelograms):
+    drawn = set()
+    for shade in (False, True):
+        looks = {"families": families, "parallelograms": parallelograms, "shade": shade}
+        data = built(map="inverse", m=4, n=3, **looks).save(".svg", 0.3, 0.5)
+        assert ET.fromstring(data).tag.endswith("svg")
+        assert built(map="inverse", m=4, n=3, **looks).save(".svg", 0.3, 0.5) == data
+        for name, colour in plot.COLOURS.items():
+            assert (colour.encode() in data) is (name in families)
+        drawn.add(data)
+    assert len(drawn) == 2 and list(scratch.iterdir()) == []
+
+
+def test_a_saved_picture_decodes_and_shows_the_net_in_the_middle(vase, scratch):
+    data = vase.save(".png", -0.9, 0.4)
+    image = imread(streams.BytesIO(data), format="png")
+    assert image.shape[0] > 500 and image.shape[1] > 500
+    ink = (image[..., :3] < 0.99).any(axis=2)
+    rows, columns = (np.flatnonzero(ink.any(axis=axis)) for axis in (1, 0))
+    for some, size in ((rows, len(ink)), (columns, ink.shape[1])):
+        assert abs((some[0] + some[-1]) / 2 / size - 0.5) < 0.05
+    assert vase.save(".png", -0.9, 0.4) == data
+    assert vase.save(".png", 0.5, 1.4) != data
+    assert list(scratch.iterdir()) == []
+
+
+@pytest.mark.parametrize("suffix", ["", "obj", ".stl", ".OBJ", ".py", "/../x.obj", "net.obj"])
+def test_other_suffixes_are_refused_with_the_known_ones(vase, scratch, suffix):
+    with pytest.raises(ValueError, match=r"\.svg.*\.obj"):
+        vase.save(suffix)
+    assert list(scratch.iterdir()) == []
+
+
+def test_all_formats_are_offered_and_missing_packages_are_named(monkeypatch):
+    assert set(session.SAVED) == {".svg", ".png", ".obj", ".ply", ".off", ".vtp", ".glb"} | {
+        ".dxf",
+        ".3dm",
+    }
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    assert {s: session.missing(s) for s in session.SAVED if session.missing(s)} == {
+        ".dxf": "ezdxf",
+        ".3dm": "rhino3dm",
+    }
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
+    assert not any(map(session.missing, session.SAVED))
+
+
+# --- what a net looks like ----------------------------------------------------------------
+
+
+LOOKED = {
+    "skew patch": surfaces.freeform_patch(5, 4),
+    "closed web": loxodrome.web(surfaces.sphere_profile(), 1.2, 0.9, 6, 3)[:2],
+    "one quad": (
+        np.array([[0, 1, 0], [0, 0, 0.2], [1, 0, 0], [1.5, 1.2, 0]]),
+        mesh.grid_quads(1, 1),
+    ),
+}
+each_net = pytest.mark.parametrize("net", LOOKED.values(), ids=LOOKED)
+
+
+def edges(pairs):
+    """Segments as sorted pairs of vertex numbers, sorted."""
+    return sorted(map(tuple, np.sort(pairs, axis=1).tolist()))
+
+
+def filled(plan, W):
+    """(points, triangles) of all that is filled."""
+    quads = plan.quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    return W, np.concatenate([quads, plan.triangles]).astype(np.int64)
+
+
+@each_net
+@each_layout
+def test_every_edge_is_drawn_once_in_the_family_of_its_polyline(net, families, parallelograms):
+    V, Q = net
+    plan = look.layout(Q, len(V), families, parallelograms)
+    lines = mesh.polylines(Q)._asdict()
+    for name in ("u", "v"):
+        pieces = [pair for line in lines[name] for pair in pairwise(line)]
+        assert edges(plan.lines[name]) == edges(pieces)
+    assert tuple(plan.lines) == families
+
+
+@pytest.mark.parametrize("families", [(), ("d2",), ("v", "d1"), FAMILIES])
+def test_only_the_families_that_are_asked_for_are_drawn(families):
+    V, Q = LOOKED["skew patch"]
+    plan = look.layout(Q, len(V), families)
+    assert tuple(plan.lines) == families and all(map(len, plan.lines.values()))
+
+
+@each_net
+@each_layout
+def test_cells_and_their_colours_are_as_many_as_the_layout_needs(net, families, parallelograms):
+    V, Q = net
+    plan = look.layout(Q, len(V), families, parallelograms)
+    inner = len(families) > 2
+    assert len(plan.quads) == (len(Q) if parallelograms or not inner else 0)
+    assert len(plan.triangles) == (4 * len(Q) if parallelograms or inner else 0)
+    W = look.points(V, plan)
+    assert np.array_equal(W[: len(V)], V)
+    every = np.concatenate([a.ravel() for a in (plan.quads, plan.triangles, *plan.lines.values())])
+    assert every.max() < len(W)
+    for palette in (look.LIGHT, look.DARK):
+        rgb = look.fills(plan, palette)
+        assert rgb.shape == (len(plan.quads) + len(plan.triangles), 3) and rgb.dtype == np.uint8
+        # The parallelograms alone differ from the rest:
+        assert len(np.unique(rgb, axis=0)) == (2 if parallelograms else 1)
+        assert len(np.unique(rgb[: len(plan.quads)], axis=0)) <= 1
+
+
+@each_net
+@pytest.mark.parametrize("families", [("u", "v"), FAMILIES])
+def test_the_parallelograms_are_those_of_the_checkerboard(net, families):
+    V, Q = net
+    plan = look.layout(Q, len(V), families, True)
+    board = mesh.checkerboard(V, Q)
+    assert np.allclose(look.points(V, plan)[plan.quads], board.V[board.black], atol=1e-15)
+
+
+@each_net
+@pytest.mark.parametrize("parallelograms", [False, True])
+def test_diagonals_run_through_the_mean_of_the_corners_on_what_is_filled(net, parallelograms):
+    V, Q = net
+    plan = look.layout(Q, len(V), FAMILIES, parallelograms)
+    W = look.points(V, plan)
+    for name, ends in (("d1", (0, 2)), ("d2", (1, 3))):
+        pairs = plan.lines[name]
+        count = np.bincount(pairs.ravel(), minlength=len(W))
+        expected = np.bincount(Q[:, ends].ravel(), minlength=len(V))  # one end a face
+        assert np.array_equal(count[: len(V)], expected)
+        middles = W[np.flatnonzero(count[len(V) :] == 2) + len(V)]
+        for face in Q:
+            assert np.linalg.norm(middles - V[face].mean(axis=0), axis=1).min() < 1e-12
+        assert len(pairs) == len(Q) * (4 if parallelograms else 2)
+        along = (
+            W[pairs[:, :1]]
+            + np.linspace(0, 1, 6)[:, None] * (W[pairs[:, 1]] - W[pairs[:, 0]])[:, None]
+        )
+        near, _, _ = igl.point_mesh_squared_distance(along.reshape(-1, 3), *filled(plan, W))
+        assert np.sqrt(near).max() < 1e-9
+
+
+def test_all_layouts_fill_the_same_area_of_a_planar_net():
+    V, Q = (built(map="square", m=6, n=5).V, mesh.grid_quads(6, 5))
+    d1, d2 = V[Q[:, 2]] - V[Q[:, 0]], V[Q[:, 3]] - V[Q[:, 1]]
+    area = np.abs(np.cross(d1, d2)[:, 2]).sum() / 2
+    for families, parallelograms in FOUR:
+        plan = look.layout(Q, len(V), families, parallelograms)
+        W, F = filled(plan, look.points(V, plan))
+        a, b, c = W[F].transpose(1, 0, 2)
+        assert np.cross(b - a, c - a)[:, 2].sum() / 2 == pytest.approx(area)
+        assert np.all(np.cross(b - a, c - a)[:, 2] > 0)
+
+
+@each_layout
+def test_every_cell_has_the_colour_of_the_face_it_is_cut_from(families, parallelograms):
+    i, j = np.meshgrid(np.arange(4.0), np.arange(5.0), indexing="ij")
+    V, Q = np.stack([i, j, 0 * i], axis=-1).reshape(-1, 3), mesh.grid_quads(3, 4)
+    place = np.floor(V[Q].mean(axis=1))[:, :2]
+    shade = np.concatenate([place, place[:, :1] + 7], axis=1).astype(np.uint8)
+    plan = look.layout(Q, len(V), families, parallelograms)
+    W = look.points(V, plan)
+    middles = [W[cells].mean(axis=1) for cells in (plan.quads, plan.triangles) if len(cells)]
+    square = np.floor(np.concatenate(middles))[:, :2]
+    assert np.array_equal(look.fills(plan, look.LIGHT, shade)[:, :2], square)
+
+
+def test_curves_are_thinner_where_there_are_more_quads():
+    widths = [look.line_width(count) for count in (1, 100, 640, 2000, 5000, 20000)]
+    assert all(a >= b > 0 for a, b in pairwise(widths)) and widths[0] > widths[-1]
+
+
+def test_shades_darken_with_the_deviation_between_the_ends_of_the_scale():
+    brightness = look.shades(np.logspace(-12, 2, 200)).astype(int).sum(axis=1)
+    assert np.all(np.diff(brightness) <= 0)
+    assert len(np.unique(brightness)) > 50
+    assert look.shades(np.array([0.0])).min() > 230  # exact faces are nearly white
+
+
+def test_the_scale_names_the_deviations_of_its_colours():
+    scale = look.scale()
+    for colour, words in scale[1:]:
+        rgb = look.shades(np.array([float(words.removesuffix("\u00b0"))]))[0]
+        assert colour == "rgb({},{},{})".format(*rgb)
+    values = [float(words.strip("< \u00b0")) for _, words in scale]
+    assert np.allclose(np.diff(np.log10(values[1:])), 1)
+    assert scale[0][1].startswith("<") and values[0] == values[1]
+    below = look.shades(np.array([values[1] / 10]))[0]
+    assert scale[0][0] == "rgb({},{},{})".format(*below)
+    assert len({colour for colour, _ in scale}) == len(scale)
+
+
+# --- small drawings -----------------------------------------------------------------------
+
+
+MODERATE = list(product((35, 60, 90, 140), (40, 90, 120)))
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def parsed(text):
+    root = ET.fromstring(text)
+    assert root.tag == SVG + "svg" and root.get("aria-label")
+    return root
+
+
+def segments(root, kind):
+    """The lines of a class: complex (k, 2)."""
+    found = [e for e in root.iter(SVG + "line") if e.get("class") == kind]
+    values = [[float(e.get(k)) for k in ("x1", "y1", "x2", "y2")] for e in found]
+    return np.array(values).reshape(-1, 4) @ np.array([[1, 0], [1j, 0], [0, 1], [0, 1j]])
+
+
+def polyline(element):
+    pairs = [pair.split(",") for pair in element.get("points").split()]
+    return np.array([complex(float(x), float(y)) for x, y in pairs])
+
+
+def between(a, b):
+    """The angle between two directions, degrees in (0, 180)."""
+    return np.degrees(np.abs(np.angle(b / a)))
+
+
+def drawn(theta, theta0):
+    """The root of the drawn parallelogram and its corners A, B, C, D, by classes alone."""
+    root = parsed(plates.parallelogram(*np.radians([theta, theta0])))
+    (B, D), (one, two) = segments(root, "u")[0], segments(root, "v")[0]
+
+    def is_side(kind, p, q):
+        return any({p, q} == set(ends) for ends in segments(root, kind).tolist())
+
+    A, C = (one, two) if is_side("d1", B, two) else (two, one)
+    for kind, p, q in (("d1", B, C), ("d1", A, D), ("d2", B, A), ("d2", C, D)):
+        assert is_side(kind, p, q)
+    assert len(segments(root, "d1")) == len(segments(root, "d2")) == 2
+    return root, (A, B, C, D)
+
+
+@pytest.mark.parametrize(("theta", "theta0"), MODERATE)
+def test_the_drawn_parallelogram_has_both_angles_and_marks_them(theta, theta0):
+    root, (A, B, C, D) = drawn(theta, theta0)
+    centre = (A + C) / 2
+    assert abs(A - B - (D - C)) < 0.3 and B.imag > A.imag  # A is above B
+    assert between(C - B, A - B) == pytest.approx(theta, abs=1)
+    assert between(A - centre, D - centre) == pytest.approx(theta0, abs=1)
+    one, two = (polyline(e) for e in root.iter(SVG + "polyline"))
+    for arc, apex, angle in ((one, B, theta), (two, centre, theta0)):
+        assert np.ptp(np.abs(arc - apex)) < 0.3
+        assert between(arc[0] - apex, arc[-1] - apex) == pytest.approx(angle, abs=2)
+    names = [e.text for e in root.iter(SVG + "text")]
+    assert names == ["\u03b8", "\u03b8\u2080"]
+
+
+@pytest.mark.parametrize(("theta", "theta0"), EXTREME)
+def test_the_drawing_fits_its_box_at_extreme_angles(theta, theta0):
+    root, corners = drawn(theta, theta0)
+    _, _, width, height = map(float, root.get("viewBox").split())
+    texts = [complex(float(e.get("x")), float(e.get("y"))) for e in root.iter(SVG + "text")]
+    arcs = [p for e in root.iter(SVG + "polyline") for p in polyline(e)]
+    points = np.array([*corners, *texts, *arcs])
+    assert np.isfinite(points).all()
+    assert points.real.min() >= 0 and points.real.max() <= width
+    assert points.imag.min() >= 0 and points.imag.max() <= height
+    extent = np.ptp(np.real(corners)) / width, np.ptp(np.imag(corners)) / height
+    assert max(extent) > 0.6  # and fills it
+
+
+def bars(root, row):
+    """(middles, heights) of the bars of a histogram."""
+    found = [e for e in root.iter(SVG + "rect") if e.get("class") == f"bar{row}"]
+    get = [[float(e.get(k)) for k in ("x", "width", "height", "y")] for e in found]
+    x, width, height, _ = np.array(get).reshape(-1, 4).T
+    return x + width / 2, height
+
+
+def test_the_bars_of_the_histograms_count_the_faces_around_a_common_zero():
+    values = {-0.37: 3, 0.0: 12, 0.15: 6, 0.3: 1}  # far apart
+    theta = np.repeat(list(values), list(values.values()))
+    root = parsed(plates.histograms(theta, np.full(9, -0.1), (60, 45.5)))
+    low, zero, high = (
+        e
+        for e in root.iter(SVG + "text")
+        if "-" not in e.text[:1] and e.text[-1] == "\u00b0" and e.text.count("\u03b8") == 0
+    )
+    reach = float(high.text.strip("\u00b0"))
+    assert low.text == f"\u2212{high.text}" and zero.text == "0\u00b0"
+    assert reach == 0.5  # the next of 1, 2, 5 times a power of ten
+    left, right = float(low.get("x")), float(high.get("x"))
+    at = (np.array(list(values)) / reach + 1) / 2 * (right - left) + left
+    x, height = bars(root, 0)
+    assert np.abs(x - at).max() < (right - left) / 27
+    count = np.array(list(values.values()))
+    assert np.allclose(height / height.max(), count / count.max(), atol=0.01)
+    x, _ = bars(root, 1)
+    assert len(x) == 1 and abs(x[0] - (left + right) / 2 + 0.2 * (right - left) / 2) < 5
+    words = " ".join(e.text for e in root.iter(SVG + "text"))
+    assert "\u03b8 \u2212 60\u00b0" in words and "\u03b8\u2080 \u2212 45.5\u00b0" in words
+
+
+@pytest.mark.parametrize(
+    "most", [1, 1 + 5e-13, 2 - 1e-12, 5 + 1e-12, 1e-7, 0.001, 1000, 0.2 + 1e-14]
+)
+def test_no_face_falls_out_of_the_histogram(most):
+    spread = most * np.array([-1.0, -0.6, 0.0, 0.5, 1.0])
+    for values in (spread, -spread):
+        root = parsed(plates.histograms(values, values[1:4], (60, 60)))
+        assert len(bars(root, 0)[0]) == 5 and len(bars(root, 1)[0]) == 3
+
+
+def test_exact_nets_have_one_bar_in_the_middle():
+    root = parsed(plates.histograms(np.zeros(50), np.full(50, 1e-13), (60, 60)))
+    width = float(root.get("viewBox").split()[2])
+    for row in (0, 1):
+        x, _ = bars(root, row)
+        assert len(x) == 1 and x[0] == pytest.approx(width / 2, abs=1)
+
+
+@pytest.mark.parametrize("name", choices.PROFILES)
+def test_the_drawn_profile_has_its_radii_and_passes_through_its_dots(name):
+    radii = np.array(choices.PROFILES[name])
+    root = parsed(plates.profile(tuple(radii)))
+    dots = [complex(float(e.get("cx")), float(e.get("cy"))) for e in root.iter(SVG + "circle")]
+    dots, axis = np.array(dots), segments(root, "axis")[0].real[0]
+    scale = (dots[0].real - axis) / radii[0]
+    assert np.allclose(dots.real - axis, scale * radii, atol=0.2)
+    assert np.allclose(dots.imag, dots[0].imag - scale * 0.5 * np.arange(7), atol=0.2)  # upwards
+    curve = polyline(next(root.iter(SVG + "polyline")))
+    step = np.abs(np.diff(curve)).max()
+    assert np.abs(dots[:, None] - curve).min(axis=1).max() < step / 2 + 0.2
+    assert abs(curve[0] - dots[0]) < 0.2 and abs(curve[-1] - dots[-1]) < 0.2
+
+
+def test_a_profile_that_is_none_is_drawn_as_dots():
+    radii = (2.5, 0.05, 2.5, 0.05, 2.5, 0.05, 2.5)
+    with pytest.raises(ValueError):
+        surfaces.spline_profile(np.stack([radii, 0.5 * np.arange(7)], axis=1))
+    root = parsed(plates.profile(radii))
+    assert len(list(root.iter(SVG + "circle"))) == 7 and not list(root.iter(SVG + "polyline"))
+
+
+@given(st.floats(-1e15, 1e15, allow_subnormal=False), st.integers(1, 3))
+def test_short_numbers_are_short_and_near(x, digits):
+    text = plates.short(x, digits)
+    assert "-" not in text and "+" not in text and "e0" not in text
+    assert len(text) <= digits + 8
+    value = float(text.replace("\u2212", "-"))
+    assert value == pytest.approx(x, rel=0.51 * 10.0 ** (1 - digits), abs=1e-300)
+
+
+@pytest.mark.parametrize(
+    ("x", "text"),
+    [
+        (0, "0"),
+        (0.25, "0.25"),
+        (-0.25, "\u22120.25"),
+        (4.321e-13, "4.3e\u221213"),
+        (1.5e-7, "1.5e\u22127"),
+        (2e12, "2e12"),
+        (3e6, "3e6"),
+    ],
+)
+def test_short_numbers_are_written_as_on_paper(x, text):
+    assert plates.short(x) == text
+
+
+def test_the_texts_of_the_numbers_say_what_the_numbers_say():
+    found = built(map="inverse", theta=61.25, m=40, n=40)
+    said = found.numbers()
+    texts = plates.numbers(said, found.shown)
+    assert texts["quads"] == "1\u2009600" and texts["theta"] == "61.25" and texts["theta0"] == "60"
+    for name in set(said._fields) - {"quads"}:
+        value = float(texts[name].replace("\u2212", "-"))
+        assert value == pytest.approx(getattr(said, name), rel=0.05)
+    assert set(texts) == {*said._fields, "theta", "theta0"}

@@ -1,0 +1,1115 @@
+"""The explorer's page without a browser: tabs, the server's guard over HTTP, notebooks."""
+
+import asyncio
+import base64
+import http.client
+import io as streams
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import types
+import warnings
+from contextlib import asynccontextmanager
+from dataclasses import asdict
+from itertools import product
+from urllib.parse import parse_qsl, urlencode, urljoin, urlsplit
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from inetlib import examples, io, measure, surfaces
+from inetlib.explorer import choices, look, nets, notebook, plates
+from inetlib.explorer.choices import Choice
+from inetlib.explorer.session import Session
+
+NEEDED = "pyvista", "trame", "trame_vtk", "trame_vuetify", "aiohttp"
+HOST = "127.0.0.1"
+LIMIT = 60  # seconds after which a test gives up: nothing here takes so long
+SIDE = {"position": [3.0, -4.0, 5.0], "focalPoint": [0.0, 0.0, 0.0]}
+
+
+@pytest.fixture(scope="module")
+def serve():
+    """The module `inetlib.explorer.serve`, where its packages are installed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of other people's packages
+        for name in NEEDED:
+            pytest.importorskip(name, reason=f"{name}, of the extra `view`, is not installed")
+        from inetlib.explorer import serve
+    return serve
+
+
+@pytest.fixture(scope="module")
+def app_module(serve):
+    """The module `inetlib.explorer.app`."""
+    return sys.modules[serve.App.__module__]
+
+
+@pytest.fixture(scope="module")
+def run():
+    """A function that runs a coroutine: one event loop for all, so that tabs can be shared."""
+    with asyncio.Runner() as runner:
+        yield runner.run
+
+
+@pytest.fixture
+def quick(app_module, monkeypatch):
+    """Searches begin at once and do not wait to be seen."""
+    monkeypatch.setattr(app_module, "REST", 0.01)
+    monkeypatch.setattr(app_module, "PACE", 0.001)
+
+
+@pytest.fixture
+def gate(app_module, monkeypatch):
+    """Searches begin at once and wait after every step, until the event is set."""
+    event = threading.Event()
+    monkeypatch.setattr(app_module, "REST", 0.01)
+    monkeypatch.setattr(
+        app_module, "time", types.SimpleNamespace(sleep=lambda _: event.wait(LIMIT))
+    )
+    yield event
+    event.set()
+
+
+async def until(condition):
+    """Wait until it holds."""
+    async with asyncio.timeout(LIMIT):
+        while not condition():
+            await asyncio.sleep(0.005)
+
+
+# --- one tab ------------------------------------------------------------------------------
+
+
+@asynccontextmanager
+async def opened(serve, name, **options):
+    """The app of a tab that has no browser."""
+    app = serve.App(name, **options)
+    task = app.server.start(backend="generic", exec_mode="task")
+    await app.server.ready
+    try:
+        yield app
+    finally:
+        app.close()
+        await app.server.stop()
+        await task
+
+
+@pytest.fixture(scope="module")
+def shared(serve, run):
+    """The app that the fixture `tab` makes as new for every test."""
+    opening = opened(serve, "shared")
+    app = run(opening.__aenter__())
+    yield app
+    run(opening.__aexit__(None, None, None))
+
+
+@pytest.fixture
+def tab(shared, run):
+    """tab(work): run `await work(app)` with a tab that nobody has used."""
+
+    async def new(work):
+        shared.session, shared.sight, shared.fitted = Session(), None, None
+        shared.state.update({"numbers": {}, "alert": "", "progress": "", "searching": False})
+        try:
+            await work(shared)
+        finally:
+            shared.stop()
+            for task in (shared._task, shared._search):
+                if task is not None:
+                    task.cancel()
+
+    return lambda work: run(new(work))
+
+
+async def arrived(app, query="", dark=False):
+    """A browser has come, and the first net is shown."""
+    app.arrive(query, dark, 1.5)
+    await until(lambda: app.state.numbers and not app.state.searching)
+
+
+async def change(app, **values):
+    """What the page does when values change."""
+    with app.state:
+        app.state.update(values)
+    await asyncio.sleep(0)
+
+
+def made(**values):
+    """A session with the net of these values, made without a tab."""
+    session = Session()
+    assert session.change(**values) == []
+    if session.must_search:
+        session.search(session.begin())
+    else:
+        session.construct()
+    assert session.problem == ""
+    return session
+
+
+def texts(session):
+    return plates.numbers(session.numbers(), session.shown)
+
+
+def echo(choice):
+    """A choice as the state holds it."""
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in asdict(choice).items()}
+
+
+def shown(app):
+    """The choice in the state."""
+    return {name: app.state[name] for name in choices.NAMES}
+
+
+def test_a_tab_shows_the_net_of_its_link(tab):
+    async def work(app):
+        await arrived(app, "?theta=50&map=exp&m=5&n=4&families=d1")
+        alone = made(theta=50, map="exp", m=5, n=4, families="d1")
+        assert np.array_equal(app.session.V, alone.V)
+        assert app.state.numbers == texts(alone) and app.state.message == alone.message
+        assert shown(app) == echo(alone.choice)
+        assert app.state.link == alone.link() and app.state.code == alone.code()
+        assert app.state.alert == app.state.problem == ""
+        for words in (app.state.parallelogram_svg, app.state.histogram_svg, app.state.profile_svg):
+            assert words.startswith("<svg")
+
+    tab(work)
+
+
+CHANGES = {
+    "slider": {"theta": 70},
+    "field": {"theta0": "70.25"},
+    "lock": {"lock": True, "theta": 80.0},
+    "size": {"m": 7.0, "n": "3"},
+    "sheet": {"kind": "isothermal", "surface": "rolled", "bend": 200},
+    "image": {"kind": "isothermal", "moebius": True, "pz": 2.5},
+    "profile": {"kind": "revolution", "radii": [1.0, 1.1, 1.2, 1.1, 1.0, 0.9, 0.8]},
+    "radius in a field": {"kind": "revolution", "radii": [0.9, "1.1", 1, 1, 1, 1, 1]},
+    "families": {"families": ["d2", "u"]},
+    "looks": {"parallelograms": True, "shade": True},
+}
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_of_the_page_changes_net_numbers_code_and_link(tab, name):
+    async def work(app):
+        await arrived(app, "?m=6&n=5")
+        await change(app, **CHANGES[name])
+        alone = made(**{"m": 6, "n": 5} | CHANGES[name])
+        await until(lambda: app.state.link == alone.link())
+        await until(lambda: app.state.numbers == texts(alone))
+        assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
+        assert shown(app) == echo(alone.choice) and app.state.alert == ""
+
+    tab(work)
+
+
+REFUSED = {
+    "theta": 180,
+    "theta0": "steep",
+    "m": "2.5",
+    "n": None,
+    "kind": "cube",
+    "families": ["u", "w"],
+    "radii": [1.0, 1.0],
+    "lock": "perhaps",
+}
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_a_refused_value_is_shown_back_as_the_former_one_with_a_sentence(tab, name):
+    async def work(app):
+        await arrived(app, "?m=6&n=5&theta=50&radii=cone")
+        before, V = shown(app), app.session.V
+        await change(app, **{name: REFUSED[name]})
+        await until(lambda: app.state.alert)
+        assert shown(app) == before and app.session.V is V
+        assert name in app.state.alert or "radi" in app.state.alert
+        await change(app, theta=70)  # and the page goes on
+        await until(lambda: app.state.numbers["theta"] == "70")
+        assert shown(app) == before | {"theta": 70.0}
+
+    tab(work)
+
+
+def test_a_link_with_wrong_values_is_answered_with_sentences_and_a_net(tab):
+    async def work(app):
+        await arrived(app, "?theta=<script>&kind=cube&n=5&" + "x" * 5000 + "=1")
+        assert shown(app) == echo(Choice(n=5))
+        assert all(word in app.state.alert for word in ("theta", "kind", "xxx"))
+        assert len(app.state.alert) < 500 and app.state.numbers["theta"] == "60"
+
+    tab(work)
+
+
+def test_two_tabs_share_nothing(serve, run):
+    async def both():
+        async with opened(serve, "two") as two:
+            async with opened(serve, "one") as one:
+                for app in (one, two):
+                    await arrived(app, "?m=4&n=4")
+                before, V = dict(two.state.to_dict()), two.session.V
+                await change(one, theta=70, kind="revolution", families=["d1"], dark=True)
+                await until(lambda: one.state.numbers["theta"] == "70")
+                assert dict(two.state.to_dict()) == before and two.session.V is V
+                assert (one.session.choice.theta, two.session.choice.theta) == (70, 60)
+            await change(two, theta=80)  # it lives on without the other one
+            await until(lambda: two.state.numbers["theta"] == "80")
+
+    run(both())
+
+
+def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(tab):
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        numbers, V = app.state.numbers, app.session.V
+        await change(app, kind="revolution", theta=179.5, theta0=90)
+        await until(lambda: app.state.problem)
+        assert app.state.problem.startswith("no net: ") and app.session.V is V
+        assert app.state.numbers == numbers and not app.state.searching
+        await change(app, theta=70)
+        await until(lambda: app.state.numbers["theta"] == "70")
+        assert app.state.problem == ""
+
+    tab(work)
+
+
+def test_what_is_only_shown_is_not_made_again(tab):
+    async def work(app):
+        await arrived(app, "?m=4&n=3")
+        V, cells = app.session.V, []
+        for looks in product((["u", "v"], ["u", "d1"]), (False, True)):
+            await change(app, families=looks[0], parallelograms=looks[1])
+            plan = look.layout(app.session.Q, len(V), *map(tuple, looks[:1]), looks[1])
+            want = len(plan.quads) + len(plan.triangles)
+            await until(lambda want=want: app.scene.faces.n_cells == want)
+            cells.append(want)
+            assert app.session.V is V
+        assert len(set(cells)) > 2
+        await change(app, dark=True)
+        await until(lambda: app.state.colours == look.DARK.families)
+        assert app.session.V is V
+
+    tab(work)
+
+
+def test_what_goes_wrong_unexpectedly_is_said(tab, monkeypatch, capsys):
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        monkeypatch.setattr(nets, "construct", lambda choice: [][1])
+        await change(app, theta=70)
+        await until(lambda: app.state.problem)
+        assert "list index out of range" in app.state.problem
+        monkeypatch.undo()
+        await change(app, theta=80)
+        await until(lambda: app.state.numbers["theta"] == "80")
+        assert app.state.problem == ""
+
+    tab(work)
+    assert "IndexError" in capsys.readouterr().err
+
+
+# --- searching in a tab -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("values", [{"kind": "freeform", "m": 5, "n": 4}, {"kind": "cover"}])
+def test_a_search_runs_to_its_end(tab, quick, values):
+    values = {"quads": 60, "theta": 75} | values
+
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        assert not app.state.can_search
+        await change(app, **values)
+        await until(lambda: app.state.searching)
+        await until(lambda: not app.state.searching)
+        alone = made(**{"m": 4, "n": 4} | values)
+        assert np.array_equal(app.session.V, alone.V)
+        assert app.state.message == alone.message and app.state.can_search
+        assert app.state.numbers == texts(alone)
+        app.run()  # again
+        await until(lambda: app.state.searching)
+        await until(lambda: not app.state.searching)
+        assert np.array_equal(app.session.V, alone.V)
+
+    tab(work)
+
+
+def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(tab, gate):
+    async def work(app):
+        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+        await until(lambda: app.state.progress == "start")
+        start = surfaces.freeform_patch(5, 5)[0]
+        assert np.array_equal(app.session.V, start) and app.state.searching
+        assert app.state.numbers["quads"] == "25"
+        app.stop()
+        gate.set()
+        await until(lambda: not app.state.searching)
+        assert "stopped" in app.state.message and app.state.problem == ""
+        assert np.array_equal(app.session.V, start)
+
+    tab(work)
+
+
+def test_stop_is_heard_before_the_first_step(tab, app_module, monkeypatch):
+    monkeypatch.setattr(app_module, "REST", 0.2)  # while it waits for further changes
+    monkeypatch.setattr(app_module, "PACE", 0.001)
+
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        await change(app, kind="freeform")
+        await until(lambda: app.state.searching)
+        app.stop()
+        await until(lambda: not app.state.searching)
+        assert not app.session.message.startswith("converged")
+
+    tab(work)
+
+
+def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(tab, gate):
+    async def work(app):
+        over, search = threading.Event(), app.session.search
+
+        def searched(*args):
+            search(*args)
+            over.set()
+
+        app.session.search = searched
+        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+        await until(lambda: app.state.progress == "start")
+        await change(app, kind="plane")
+        await until(lambda: not app.state.searching)
+        alone = made(m=5, n=5, theta=100)
+        assert app.state.numbers == texts(alone) and not over.is_set()
+        gate.set()
+        await until(over.is_set)
+        await asyncio.sleep(0.02)  # for what the thread may have left to do here
+        assert np.array_equal(app.session.V, alone.V) and app.state.numbers == texts(alone)
+        assert app.state.message == alone.message and not app.state.searching
+
+    tab(work)
+
+
+def test_a_newer_search_takes_the_place_of_an_older_one(tab, gate):
+    async def work(app):
+        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+        await until(lambda: app.state.progress == "start")
+        await change(app, theta=75)
+        gate.set()
+        alone = made(kind="freeform", m=5, n=5, theta=75)
+        await until(lambda: not app.state.searching and app.state.numbers == texts(alone))
+        assert np.array_equal(app.session.V, alone.V) and app.state.message == alone.message
+
+    tab(work)
+
+
+def test_a_search_that_fails_is_over_and_says_why(tab, quick):
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        await change(app, kind="cover", source="file")  # none was named
+        await until(lambda: app.state.problem)
+        assert "file" in app.state.problem and not app.state.searching
+
+    tab(work)
+
+
+def test_a_search_that_breaks_unexpectedly_is_over_too(tab, quick, monkeypatch, capsys):
+    def broken(*_):
+        raise RuntimeError("a factor is singular")
+
+    async def work(app):
+        await arrived(app, "?m=4&n=4")
+        monkeypatch.setattr(nets, "find", broken)
+        await change(app, kind="freeform")
+        await until(lambda: app.state.problem)
+        await asyncio.sleep(0.05)
+        assert "singular" in app.state.problem and not app.state.searching
+
+    tab(work)
+    capsys.readouterr()
+
+
+def test_closing_a_tab_ends_its_search_and_forgets_it(serve, run, gate):
+    from trame.app.core import AVAILABLE_SERVERS
+
+    async def work():
+        async with opened(serve, "closing") as app:
+            app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+            await until(lambda: app.state.progress == "start")
+            search = app.session.run
+            assert not search.stopped and "closing" in AVAILABLE_SERVERS
+        assert search.stopped and "closing" not in AVAILABLE_SERVERS
+        gate.set()
+
+    run(work())
+
+
+# --- files, given nets --------------------------------------------------------------------
+
+
+def test_a_file_is_covered_in_every_tab_and_named_in_the_code(serve, run, quick, tmp_path):
+    path = tmp_path / "my roof.obj"
+    io.write(path, *examples.wavy_roof(12))
+
+    async def work(app):
+        await arrived(app, "?quads=60")
+        await until(lambda: app.state.message.startswith("converged"))
+        assert (app.state.kind, app.state.source) == ("cover", "file")
+        assert str(path) in app.state.code
+
+    async def own():
+        async with opened(serve, "own", surface=io.surface(path), path=path) as app:
+            await work(app)
+
+    run(own())
+
+
+def test_a_given_net_is_shown_and_never_changed(serve, run):
+    V, Q = surfaces.freeform_patch(5, 4)
+
+    async def work(app):
+        await arrived(app, "?families=d1,d2&kind=freeform&theta=20")
+        theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
+        assert float(app.state.numbers["mean_theta"]) == pytest.approx(theta, abs=1e-6)
+        assert float(app.state.numbers["theta0"]) == pytest.approx(theta0, abs=1e-6)
+        await change(app, shade=True, m=9)
+        await until(lambda: app.scene.faces.n_cells == 4 * len(Q))
+        app.run()
+        await asyncio.sleep(0.05)
+        assert np.array_equal(app.session.V, V) and not app.state.searching
+        assert not app.state.can_search and list(app.state.families) == ["d1", "d2"]
+
+    async def own():
+        async with opened(serve, "own", net=(V, Q)) as app:
+            await work(app)
+
+    run(own())
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".off", ".svg", ".png"])
+def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page(tab, suffix):
+    async def work(app):
+        await arrived(app, "?kind=isothermal&m=4&n=3&families=d1")
+        away = np.array(SIDE["position"])
+        sight = np.arctan2(away[1], away[0]), np.arcsin(away[2] / np.linalg.norm(away))
+        assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
+        above = {"position": [1, 2, 9.0], "focalPoint": [1, 2, 0]}
+        assert bytes(app.save(suffix, above)) == app.session.save(suffix)
+        assert app.state.alert == ""
+
+    tab(work)
+
+
+BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".stl")] + [
+    (".svg", camera)
+    for camera in (None, {}, [], "up", {"position": [1, 2, 3]}, SIDE | {"position": [1, 2]})
+]
+
+
+def test_what_cannot_be_saved_is_a_sentence(tab):
+    async def work(app):
+        await arrived(app, "?m=4&n=3")
+        for suffix, camera in BAD_SAVES:
+            app.state.alert = ""
+            assert app.save(suffix, camera) is None
+            assert app.state.alert.startswith("not saved: ")
+
+    tab(work)
+
+
+# --- the scene and its camera -------------------------------------------------------------
+
+
+def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
+    from inetlib.explorer.scene import Scene
+
+    V, Q = surfaces.freeform_patch(5, 4)
+    scene = Scene()
+    for families, parallelograms, dark in product(((), ("u",), ("v", "d1", "d2")), (0, 1), (0, 1)):
+        choice = Choice(families=families, parallelograms=bool(parallelograms))
+        palette = look.DARK if dark else look.LIGHT
+        scene.show(V, Q, choice, dark)
+        plan = look.layout(Q, len(V), families, bool(parallelograms))
+        assert np.allclose(scene.faces.points, look.points(V, plan), atol=1e-6)
+        cells = [*plan.quads.tolist(), *plan.triangles.tolist()]
+        assert [list(cell.point_ids) for cell in scene.faces.cell] == cells
+        assert np.array_equal(scene.faces.cell_data["rgb"], look.fills(plan, palette))
+        assert scene.actor.visibility == bool(families)
+        if families:
+            lines = np.concatenate(list(plan.lines.values()))
+            assert np.array_equal(scene.curves.lines.reshape(-1, 3)[:, 1:], lines)
+            rgb = np.unique(scene.curves.cell_data["rgb"], axis=0)
+            hexes = {"#{:02x}{:02x}{:02x}".format(*c) for c in rgb.tolist()}
+            assert hexes == {palette.families[name] for name in families}
+    shade = np.arange(3 * len(Q), dtype=np.uint8).reshape(-1, 3)
+    scene.show(V, Q, Choice(), False, shade)
+    assert np.array_equal(scene.faces.cell_data["rgb"], shade)
+    scene.show(V, Q, Choice(), False, None)  # the shading goes when it is switched off
+    assert len(np.unique(scene.faces.cell_data["rgb"], axis=0)) == 1
+    scene.plotter.close()
+
+
+@pytest.mark.parametrize("aspect", [0.4, 1.0, 2.5])
+@pytest.mark.parametrize("call", ["fit", "from_above", "from_side"])
+def test_every_view_shows_the_whole_net_and_not_much_else(tab, call, aspect):
+    async def work(app):
+        await arrived(app, "?kind=revolution&m=7&n=5")
+        getattr(app, call)(aspect)
+        camera = app.scene.plotter.camera
+        towards = np.array(camera.position) - camera.focal_point
+        towards /= np.linalg.norm(towards)
+        right = np.cross(camera.up, towards)
+        V = app.session.V - np.array(camera.focal_point)
+        high, wide = np.abs(V @ camera.up).max(), np.abs(V @ right).max()
+        scale = camera.parallel_scale  # half the height of the window
+        assert camera.parallel_projection
+        assert 0.85 < max(high / scale, wide / (scale * aspect)) < 1
+        assert np.all(V @ towards < np.linalg.norm(np.array(camera.position) - camera.focal_point))
+        assert call != "from_above" or np.allclose(towards, [0, 0, 1])
+        assert call == "from_above" or (0 < towards[2] < 0.8 and camera.up[2] > 0.5)
+
+    tab(work)
+
+
+def test_a_planar_net_is_seen_from_above_and_a_grown_one_is_fitted_again(tab):
+    async def work(app):
+        await arrived(app, "?m=4&n=4&map=identity")
+        camera = app.scene.plotter.camera
+        towards = np.subtract(camera.position, camera.focal_point)
+        assert np.allclose(towards / np.linalg.norm(towards), [0, 0, 1])
+        scale = camera.parallel_scale
+        await change(app, theta=62)
+        await until(lambda: app.state.numbers["theta"] == "62")
+        assert camera.parallel_scale == scale  # a small change does not move the view
+        await change(app, map="exp")
+        await until(lambda: camera.parallel_scale > 1.5 * scale)
+
+    tab(work)
+
+
+# --- the door -----------------------------------------------------------------------------
+
+
+@asynccontextmanager
+async def visited(serve, **options):
+    """(a door that is open, a client whose addresses are its)."""
+    import aiohttp
+
+    door = serve.Door(**options)
+    port = await door.open(0)
+    try:
+        async with aiohttp.ClientSession(f"http://{HOST}:{port}") as client:
+            yield door, client
+    finally:
+        await door.close()
+
+
+@pytest.fixture(scope="module")
+def house(serve, run):
+    """A door and a client for all tests that leave it as it is."""
+    visiting = visited(serve)
+    yield run(visiting.__aenter__())
+    run(visiting.__aexit__(None, None, None))
+
+
+async def raw(port, target, **headers):
+    """(status, body) of a request that no client has tidied up."""
+    reader, writer = await asyncio.open_connection(HOST, port)
+    headers = {"Host": f"{HOST}:{port}", "Connection": "close"} | headers
+    lines = [f"GET {target} HTTP/1.1", *(f"{k}: {v}" for k, v in headers.items()), "", ""]
+    writer.write("\r\n".join(lines).encode())
+    head, _, body = (await reader.read()).partition(b"\r\n\r\n")
+    writer.close()
+    await writer.wait_closed()
+    return int(head.split()[1]), body
+
+
+QUERIES = (
+    [("theta", "50"), ("families", "u,v")],
+    [("a", "1+1"), ("b", "&c=d"), ("c", "\u03b8 %"), ("d", "")],
+)
+
+
+def test_the_address_alone_leads_to_the_page_with_its_query(run, house):
+    async def work(door, client):
+        async with client.get("/") as answer:
+            assert answer.status == 200 and answer.url.path == "/index.html"
+            assert answer.content_type == "text/html" and "<html" in (await answer.text()).lower()
+        for pairs in QUERIES:
+            async with client.get(f"/?{urlencode(pairs)}", allow_redirects=False) as answer:
+                assert answer.status == 302
+                there = urlsplit(urljoin(str(answer.url), answer.headers["Location"]))
+            assert (there.netloc, there.path) == (f"{HOST}:{door.port}", "/index.html")
+            assert parse_qsl(there.query, keep_blank_values=True) == pairs
+
+    run(work(*house))
+
+
+async def linked(client, page):
+    """{address: bytes} of all that a page loads."""
+    async with client.get(page) as answer:
+        assert answer.status == 200
+        text, base = await answer.text(), str(answer.url)
+    found = {}
+    for name in re.findall(r'<(?:script|link)[^>]* (?:src|href)="([^"]+)"', text):
+        async with client.get(urljoin(base, name)) as answer:
+            assert answer.status == 200, name
+            found[name] = await answer.read()
+    return text, found
+
+
+def test_all_that_a_page_loads_is_there_for_a_given_net_too(run, house):
+    async def work(door, client):
+        door.nets["abc"] = surfaces.freeform_patch(3, 3)
+        page = await linked(client, "/index.html")
+        assert any(name.endswith(".js") for name in page[1]) and min(map(len, page[1].values())) > 0
+        assert await linked(client, "/net/abc/index.html?families=u") == page
+        async with client.get("/net/abd/index.html") as answer:
+            assert answer.status == 404 and "run the cell" in await answer.text()
+        del door.nets["abc"]
+        async with client.get("/net/abc/index.html") as answer:
+            assert answer.status == 404
+
+    run(work(*house))
+
+
+OTHERS = [
+    {"Host": "evil.example"},
+    {"Host": "evil.example:{port}"},
+    {"Host": "127.0.0.1.evil.example"},
+    {"Host": "localhost.evil.example:{port}"},
+    {"Host": "127.0.0.2"},
+    {"Host": "0.0.0.0:{port}"},
+    {"Host": ""},
+    {"Origin": "http://evil.example"},
+    {"Origin": "null"},
+    {"Origin": "http://127.0.0.1:1"},
+    {"Origin": "http://localhost:{port}"},
+    {"Origin": "http://127.0.0.1:{port}.evil.example"},
+    {"Origin": "http://evil.example/127.0.0.1:{port}"},
+    {"Host": "evil.example", "Origin": "http://evil.example"},
+]
+OURS = [
+    {},
+    {"Host": "localhost:{port}"},
+    {"Host": "127.0.0.1"},
+    {"Origin": "http://127.0.0.1:{port}"},
+    {"Host": "localhost:{port}", "Origin": "http://localhost:{port}"},
+]
+
+
+def test_other_hosts_and_other_sites_are_refused_and_ours_are_not(run, house):
+    async def work(door, client):
+        door.nets["abc"] = surfaces.freeform_patch(3, 3)
+        for target in ("/", "/index.html", "/net/abc/index.html", "/ws", "/net/abc/ws", "/none"):
+            for headers in OTHERS:
+                sent = {k: v.format(port=door.port) for k, v in headers.items()}
+                status, body = await raw(door.port, target, **sent)
+                assert status == 403 and b"<html" not in body, (target, headers)
+        for headers in OURS:
+            sent = {k: v.format(port=door.port) for k, v in headers.items()}
+            assert (await raw(door.port, "/index.html", **sent))[0] == 200, headers
+
+    run(work(*house))
+
+
+@pytest.mark.parametrize("name", ["Host", "Origin"])
+def test_a_host_or_a_site_that_cannot_be_read_is_refused_too(run, house, name):
+    async def work(door, client):
+        for value in ("[", "http://[", "[::1", "http://[x]:y", "]"):
+            status, _ = await raw(door.port, "/index.html", **{name: value})
+            assert status in (400, 403), value
+
+    run(work(*house))
+
+
+def test_behind_the_guard_of_a_hub_other_hosts_are_served(serve, run):
+    async def work(door, client):
+        headers = {"Host": "hub.example", "Origin": "https://hub.example"}
+        assert (await raw(door.port, "/index.html", **headers))[0] == 200
+
+    async def own():
+        async with visited(serve, guarded=False) as opening:
+            await work(*opening)
+
+    run(own())
+
+
+def test_no_file_but_those_of_the_page_is_read(serve, run, tmp_path):
+    secret = tmp_path / "secret.obj"
+    io.write(secret, *examples.wavy_roof(4))
+    content, name = secret.read_bytes(), secret.as_posix().lstrip("/")
+
+    async def work(door, client):
+        assert (await raw(door.port, "/index.html"))[0] == 200
+        async with client.get("/index.html") as answer:
+            script = re.search(r'src="\.?/?([^"]+\.js)"', await answer.text())[1]
+        folder = script.rpartition("/")[0]
+        for up in (
+            "../",
+            "%2e%2e/",
+            "..%2f",
+            "%2e%2e%2f",
+            "..\\",
+            "..%5c",
+            "....//",
+            "%252e%252e/",
+        ):
+            for start in ("/", f"/{folder}/", "/index.html/", "/net/abc/"):
+                status, body = await raw(door.port, start + up * 30 + name)
+                assert content[:20] not in body, (start, up)
+                assert status in (400, 403, 404) or (start == "/net/abc/" and status == 302)
+        for target in (
+            f"//{name}",
+            f"/%2f{name}",
+            f"/{name}",
+            "/secret.obj",
+            f"/{folder}/",
+            "/net/",
+        ):
+            status, body = await raw(door.port, target)
+            assert status in (400, 403, 404) and content[:20] not in body, target
+
+    async def own():
+        async with visited(serve, surface=io.surface(secret), path=secret) as opening:
+            await work(*opening)
+
+    run(own())
+
+
+def test_only_this_machine_can_connect(run, house):
+    others = {"127.0.0.2", "::1"}
+    others |= {a[4][0] for a in socket.getaddrinfo(socket.gethostname(), None)} - {HOST}
+
+    async def work(door, client):
+        for address in others:
+            with pytest.raises(OSError):
+                await asyncio.open_connection(address, door.port)
+        _, writer = await asyncio.open_connection(HOST, door.port)
+        writer.close()
+        await writer.wait_closed()
+
+    run(work(*house))
+
+
+def test_a_port_that_is_taken_is_an_error_and_a_free_one_is_used(serve, run, house):
+    async def work(door, client):
+        other = serve.Door()
+        with pytest.raises(OSError):
+            await other.open(door.port)
+        with socket.socket() as found:
+            found.bind((HOST, 0))
+            free = found.getsockname()[1]
+        other = serve.Door()
+        assert await other.open(free) == other.port == free
+        assert (await raw(free, "/index.html"))[0] == 200
+        await other.close()
+        with pytest.raises(OSError):
+            await asyncio.open_connection(HOST, free)
+
+    run(work(*house))
+
+
+def neighbours():
+    """Sockets that hold two ports next to each other."""
+    while True:
+        first, second = socket.socket(), socket.socket()
+        first.bind((HOST, 0))
+        try:
+            second.bind((HOST, first.getsockname()[1] + 1))
+            break
+        except (OSError, OverflowError):
+            first.close()
+            second.close()
+    for held in (first, second):
+        held.listen()
+    return first, second
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_without_a_port_the_next_free_one_is_taken(serve, run, monkeypatch, free):
+    first, second = neighbours()
+    usual = first.getsockname()[1]
+    monkeypatch.setattr(serve, "PORT", usual)
+    monkeypatch.setattr(serve, "MORE", 2)
+
+    async def work():
+        if free:
+            second.close()
+        door = serve.Door()
+        try:
+            port = await door.open()
+            assert (await raw(port, "/index.html"))[0] == 200
+            assert (port == usual + 1) is free and port != usual
+        finally:
+            await door.close()
+
+    with first, second:
+        run(work())
+
+
+def test_every_connection_has_an_app_of_its_own_that_ends_with_it(serve, run):
+    import aiohttp
+    from trame.app.core import AVAILABLE_SERVERS
+
+    async def work():
+        before = set(AVAILABLE_SERVERS)
+        async with visited(serve) as (door, client):
+            door.nets["abc"] = surfaces.freeform_patch(3, 3)
+            sockets = [await client.ws_connect(path) for path in ("/ws", "/ws", "/net/abc/ws")]
+            await until(lambda: len(door.tabs) == 3)
+            apps = [app for app, _ in door.tabs]
+            assert len({id(a.session) for a in apps}) == len({a.server.name for a in apps}) == 3
+            assert sorted(a.session.given for a in apps) == [False, False, True]
+            assert len(set(AVAILABLE_SERVERS) - before) == 3
+            await sockets[0].close()
+            await until(lambda: len(door.tabs) == 2)
+            for path, headers in (("/ws", {"Origin": "http://evil.example"}), ("/net/abd/ws", {})):
+                with pytest.raises(aiohttp.WSServerHandshakeError):
+                    await client.ws_connect(path, headers=headers)
+            await door.close()
+            await until(lambda: not door.tabs and set(AVAILABLE_SERVERS) == before)
+            for one in sockets[1:]:
+                await one.receive()
+                assert one.closed
+
+    run(work())
+
+
+TABS = """
+import sys
+import inetlib.explorer.session
+if {"vtkmodules", "pyvista", "trame", "aiohttp"} & {m.split(".")[0] for m in sys.modules}:
+    sys.exit("the explorer needs the packages of its page before there is one")
+
+import asyncio, gc
+import aiohttp
+from inetlib.explorer.serve import Door
+
+async def tabs():
+    door = Door()
+    port = await door.open(0)
+    async with aiohttp.ClientSession(f"http://127.0.0.1:{port}") as client:
+        sockets = [await client.ws_connect("/ws") for _ in range(3)]
+        while len(door.tabs) < 3:
+            await asyncio.sleep(0.01)
+        for app, _ in door.tabs:
+            app.arrive("?m=3&n=3", False, 1.0)
+        await asyncio.sleep(0.1)
+        for socket in sockets:
+            await socket.close()
+        while door.tabs:
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.1)
+        gc.collect()  # as Python does sooner or later
+    await door.close()
+
+asyncio.run(tabs())
+gc.collect()
+print("alive")
+"""
+
+
+def test_the_process_outlives_its_tabs(serve):
+    # In a process of its own: an error here, in VTK's destructors, would end that of the tests.
+    done = subprocess.run([sys.executable, "-c", TABS], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, "alive\n"), done.stderr[-2000:]
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name):
+    number, addresses = getattr(signal, name), []
+
+    def unheard(*_):
+        raise AssertionError("the signal was not heard")
+
+    def ready(address):
+        addresses.append(address)
+        signal.raise_signal(number)
+
+    before = signal.signal(number, unheard)
+    try:
+        serve.serve(port=0, ready=ready)
+    finally:
+        signal.signal(number, before)
+    (address,) = addresses
+    assert re.fullmatch(rf"http://{HOST}:\d+/", address)
+    with pytest.raises(OSError):
+        socket.create_connection((HOST, urlsplit(address).port), timeout=LIMIT)
+
+
+# --- notebooks ----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def door(monkeypatch):
+    """Stands for the server of the process: none is started."""
+    fake = types.SimpleNamespace(port=4321, nets={})
+    monkeypatch.setattr(notebook, "_open_door", lambda: fake)
+    monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
+    return fake
+
+
+def decoded(data):
+    """The pixels of a PNG."""
+    return imread(streams.BytesIO(data), format="png")
+
+
+def test_a_still_net_in_a_notebook_is_a_picture_of_the_same_net():
+    for values in ({"m": 5, "n": 4}, {"kind": "freeform", "m": 4, "n": 4, "theta": 75}):
+        still = notebook.show(live=False, **values)
+        assert type(still).__name__ == "Image" and type(still).__module__.startswith("IPython")
+        sight = notebook.TOP if "kind" not in values else notebook.ROUND
+        assert still.data == made(**values).save(".png", *sight)
+        assert decoded(still.data).std() > 0.01
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"theta": 180}, "theta = '180'"),
+        ({"theta": "steep", "m": 2}, "theta.*; m = '2'"),
+        ({"kind": "cube"}, "plane, isothermal"),
+        ({"colour": "red"}, "colour"),
+        ({"kind": "cover", "source": "file"}, "no file"),
+        ({"kind": "revolution", "m": 3, "theta": 179.9, "theta0": 90}, "no net"),
+    ],
+)
+def test_a_notebook_that_asks_for_what_is_none_gets_a_value_error(door, values, words):
+    for live in (True, False, None):
+        with pytest.raises(ValueError, match=words):
+            notebook.show(live=live, **values)
+
+
+def test_radii_and_families_may_be_lists_in_a_notebook(door):
+    radii = [1.0, 1.1, 1.2, 1.1, 1.0, 0.9, 0.8]
+    live = notebook.show(live=True, kind="revolution", m=5, radii=radii, families=["d1"])
+    choice, problems = choices.parse(urlsplit(live.address).query)
+    assert problems == [] and choice.radii == tuple(radii) and choice.families == ("d1",)
+
+
+@pytest.mark.parametrize("kernel", [True, False])
+@pytest.mark.parametrize("name", [True, False])
+def test_a_person_has_a_kernel_with_a_name(monkeypatch, door, kernel, name):
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    if not kernel:
+        monkeypatch.delitem(sys.modules, "ipykernel")
+    monkeypatch.setenv("JPY_SESSION_NAME", "a notebook.ipynb")
+    if not name:
+        monkeypatch.delenv("JPY_SESSION_NAME")
+    assert notebook.person() is (kernel and name)
+    for live, page in ((None, kernel and name), (True, True), (False, False)):
+        shown = notebook.show(live=live, m=3, n=3)
+        assert isinstance(shown, notebook.Live) is page
+
+
+def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
+    live = notebook.show(live=True, height=345, kind="isothermal", m=4, n=3, theta=70, lock=True)
+    bundle = live._repr_mimebundle_()
+    page = re.fullmatch(
+        r'<object type="text/html" data="([^"]+)" style="([^"]+)">'
+        r'<img [^>]*src="data:image/png;base64,([^"]+)"[^>]*></object>',
+        bundle["text/html"],
+    )
+    assert page[1] == live.address == bundle["text/plain"] and "height: 345px" in page[2]
+    assert base64.b64decode(page[3]) == base64.b64decode(bundle["image/png"])
+    still = notebook.show(live=False, kind="isothermal", m=4, n=3, theta=70, lock=True)
+    assert base64.b64decode(bundle["image/png"]) == still.data
+    assert decoded(still.data).ndim == 3
+    address = urlsplit(live.address)
+    assert (address.scheme, address.netloc) == ("http", f"{HOST}:{door.port}")
+    assert address.path == "/index.html" and door.nets == {}
+    choice = made(kind="isothermal", m=4, n=3, theta=70, lock=True).choice
+    assert choices.parse(address.query) == (choice, [])
+
+
+def test_a_given_net_has_a_page_of_its_own(door):
+    V, Q = surfaces.freeform_patch(4, 3)
+    one = notebook.show_net(V, Q, ["v", "d2"])
+    two = notebook.show_net(V, Q, ())
+    keys = [re.fullmatch(r"/net/(\w+)/index.html", urlsplit(x.address).path)[1] for x in (one, two)]
+    assert list(door.nets) == keys and keys[0] != keys[1]
+    for key in keys:
+        assert all(np.array_equal(a, b) for a, b in zip(door.nets[key], (V, Q), strict=True))
+    for live, families in ((one, ("v", "d2")), (two, ())):
+        assert choices.parse(urlsplit(live.address).query)[0].families == families
+    session = Session(net=(V, Q))
+    session.change(families=("v", "d2"))
+    assert one.picture == session.save(".png", *notebook.ROUND)
+
+
+def test_a_given_net_may_bring_its_own_picture_and_sight(door):
+    V, Q = surfaces.freeform_patch(4, 3)
+    mine = Session(net=(V, Q)).save(".png", 1.0, 0.2)
+    assert notebook.show_net(V, Q, picture=mine).picture == mine
+    assert notebook.show_net(V, Q, sight=(1.0, 0.2)).picture == mine
+    with pytest.raises(ValueError, match="vertex"):
+        notebook.show_net(V[:-1], Q)
+
+
+@pytest.mark.parametrize("prefix", ["/user/ada/", "/hub/user/bob%40x/lab/"])
+def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, prefix):
+    monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", prefix)
+    start = f"{prefix}proxy/{door.port}/"
+    live = notebook.show(live=True, m=4, n=4)
+    assert live.address == f"{start}index.html?{made(m=4, n=4).link()}"
+    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    (key,) = door.nets
+    assert given.address.startswith(f"{start}net/{key}/index.html?")
+
+
+def fetched(address):
+    """(status, text) of an address of this machine, by no proxy."""
+    there = urlsplit(address)
+    connection = http.client.HTTPConnection(there.hostname, there.port, timeout=LIMIT)
+    connection.request("GET", f"{there.path}?{there.query}")
+    answer = connection.getresponse()
+    text = answer.read().decode()
+    connection.close()
+    return answer.status, text
+
+
+def test_a_live_page_answers_from_a_server_of_the_process(serve, monkeypatch):
+    monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
+    page = notebook.show(live=True, m=4, n=4)
+    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    assert urlsplit(page.address).port == urlsplit(given.address).port  # one server for all
+    for live in (page, given):
+        status, text = fetched(live.address)
+        assert status == 200 and "<html" in text.lower()
+    key = given.address.split("/")[4]
+    assert fetched(given.address.replace(key, "0" * len(key)))[0] == 404
+
+
+@pytest.mark.parametrize("hub", [True, False])
+def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, monkeypatch, hub):
+    doors = []
+
+    class Door:
+        def __init__(self, guarded):
+            self.guarded = guarded
+            doors.append(self)
+
+        async def open(self, port):
+            self.port = port
+
+    monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.setattr(serve, "Door", Door)
+    monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/")
+    if not hub:
+        monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX")
+    assert notebook._open_door() is notebook._open_door() is doors[0]
+    assert len(doors) == 1 and doors[0].port == 0 and doors[0].guarded is not hub
+
+
+def test_without_the_packages_of_the_page_the_error_says_what_to_install(monkeypatch):
+    monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.setitem(sys.modules, "inetlib.explorer.serve", None)
+    monkeypatch.delattr("inetlib.explorer.serve", raising=False)
+    with pytest.raises(ImportError, match=r"extra `view`.*pip install"):
+        notebook.show(live=True, m=3, n=1)
+    assert decoded(notebook.show(live=False, m=3, n=1).data).ndim == 3  # pictures need none
