@@ -30,7 +30,7 @@ class App:
         self.session = Session(surface, path, net)
         self.server = get_server(name, client_type="vue3")
         self.state = self.server.state
-        self.scene = scene.Scene()
+        self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
         self._task = self._search = None
         self._remake = False
@@ -51,7 +51,7 @@ class App:
         self.server.trigger("save")(self.save)
 
     def close(self):
-        """Forget the tab: end its search, free its memory.
+        """Forget the tab: end its search, free its memory, once.
 
         Paper: Sec. 3-6 (explorer).
         """
@@ -61,7 +61,9 @@ class App:
                 task.cancel()
         AVAILABLE_SERVERS.pop(self.server.name, None)
         vtk_module.HELPERS_PER_SERVER.pop(self.server.name, None)
-        self.scene.plotter.close()
+        if self.scene is not None:
+            scene.give_back(self.scene)
+            self.scene = None
 
     # --- what the page knows --------------------------------------------------------------
 

@@ -98,3 +98,26 @@ class Scene:
 def _counted(cells):
     """Cells of one size (k, s) as VTK wants them: the size before each."""
     return np.insert(cells, 0, cells.shape[1], axis=1).ravel()
+
+
+_free = []  # scenes of tabs that were closed
+
+
+def borrow():
+    """A `Scene`, for `give_back` when it is no longer needed.
+
+    VTK objects that trame has sent to a browser call Python when they are destroyed, and end the
+    process where the garbage collector finds them.  So none ever is: the next tab takes it.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    return _free.pop() if _free else Scene()
+
+
+def give_back(scene):
+    """Keep a borrowed scene for the next tab.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    scene._known = None
+    _free.append(scene)
