@@ -17,7 +17,6 @@ from .session import SAVED, Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
-STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
 
 
 class App:
@@ -170,8 +169,7 @@ class App:
         if aspect is not None:
             self.aspect = float(aspect)
         kind = "cover" if self.session.given else self.session.choice.kind
-        flat = kind == "plane" or (self.session.V is not None and not self.session.V[:, 2].any())
-        self._look(scene.VIEWS["plane"] if flat else scene.VIEWS[kind])
+        self._look(scene.sight(kind, self.session.V))
 
     def refit(self, aspect):
         """The first scene is there: see the whole net from where it was to be seen.
@@ -179,8 +177,7 @@ class App:
         Paper: Sec. 3-6 (explorer).
         """
         self.aspect = float(aspect)
-        if self.sight is not None:
-            self._look(self.sight)
+        self._look(self.sight)
 
     def from_above(self, aspect=None):
         """See the whole net from above.
@@ -200,21 +197,16 @@ class App:
 
     def _look(self, sight):
         V = self.session.V
-        if V is None:
+        if V is None or sight is None:
             return
-        self.sight, self.fitted = sight, _extent(V)
+        self.sight, self.fitted = sight, V
         self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
 
     def _look_if_lost(self):
         """Fit the net where it is new, or much larger or smaller than when it was fitted."""
-        if self.session.V is None:
-            return
         if self.fitted is None:
             self.fit()
-            return
-        middle, size = _extent(self.session.V)
-        away = abs(middle - self.fitted[0]).max() > 0.5 * self.fitted[1]
-        if away or not 1 / STRETCH < size / self.fitted[1] < STRETCH:
+        elif scene.is_lost(self.session.V, self.fitted):
             self._look(self.sight)
 
     # --- keeping in step ------------------------------------------------------------------
@@ -306,7 +298,3 @@ class App:
         self.state.code, self.state.link = self.session.code(), self.session.link()
         if self.server.protocol and not self.session.given:
             self.server.js_call("address", "exec", self.state.link)
-
-
-def _extent(V):
-    return (V.min(axis=0) + V.max(axis=0)) / 2, float(abs(V - V.mean(axis=0)).max())

@@ -9,6 +9,7 @@ from matplotlib.colors import to_rgb
 from .. import view
 from . import look
 
+STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
 VIEWS = {  # azimuth and elevation of the viewer, degrees
     "plane": (-90.0, 90.0),
     "isothermal": (-50.0, 25.0),
@@ -93,6 +94,26 @@ class Scene:
         camera.focal_point, camera.position = middle, middle + 3 * size * axes[2]
         camera.up = axes[1]
         return camera
+
+
+def sight(kind, V):
+    """From where a net is seen by default: azimuth and elevation in degrees.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    flat = V is not None and not V[:, 2].any()
+    return VIEWS["plane" if flat else kind]
+
+
+def is_lost(V, before):
+    """Whether a net V is far off the place and size of the one that was fitted into the view.
+
+    Paper: Sec. 3-6 (explorer).
+    """
+    (middle, size), (old, reach) = (
+        ((W.min(axis=0) + W.max(axis=0)) / 2, np.abs(W - W.mean(axis=0)).max()) for W in (V, before)
+    )
+    return np.abs(middle - old).max() > reach / 2 or not 1 / STRETCH < size / reach < STRETCH
 
 
 def _counted(cells):
