@@ -4,14 +4,10 @@ import io
 import re
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
 OPTIONS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -112,13 +108,3 @@ class Reader:
 
 def image(data):
     return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
-
-
-def wait_for(true, seconds=20):
-    """Whether something becomes true within some seconds."""
-    end = time.monotonic() + seconds
-    while not true():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.05)
-    return True

@@ -10,32 +10,16 @@ import sys
 import nbformat
 import numpy as np
 import pytest
-from browsing import OPTIONS, PATIENCE, image
+from browsing import PATIENCE, image
 
 from inetlib import explorer
 
-browser_tests = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-import browser as tool  # noqa: E402  (tools/browser.py)
-
-pytestmark = [
-    pytest.mark.browser,
-    pytest.mark.skipif(
-        tool.chromium() is None, reason="no Chromium is here: make test-browser installs it"
-    ),
-]
+pytestmark = pytest.mark.browser
 CELLS = [
     "from inetlib import explorer, surfaces, view",
     "explorer.show(kind='revolution', m=12, n=10, theta=75)",
     "view.show(*surfaces.freeform_patch(8, 8))",
 ]
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    with browser_tests.sync_playwright() as playwright:
-        found = playwright.chromium.launch(executable_path=tool.chromium(), args=OPTIONS)
-        yield found
-        found.close()
 
 
 @pytest.fixture

@@ -200,11 +200,7 @@ def test_unknown_names_are_refused_by_name(name):
 def test_long_and_hostile_values_are_shortened_and_made_harmless(name):
     for start in ("9", "x", "<script>alert(1)</script>", "\n\r\x1b[2J", "7,"):
         sentence = refused(name, (start * 4000)[:9000])
-        assert (
-            name in ("radii", "families")
-            or repr(start)[1:-1] in sentence + " ..."
-            or len(start) > 20
-        )
+        assert name == "radii" or repr(start[0])[1:-1] in sentence
         assert sentence.isprintable()
         problems = parse(f"?{name}={start}" + "z" * 9000)[1]
         assert len(problems) == 1 and len(problems[0]) < 160
@@ -1085,7 +1081,8 @@ def test_the_bars_of_the_histograms_count_the_faces_around_a_common_zero():
     assert np.abs(x - at).max() < (right - left) / 27
     count = np.array(list(values.values()))
     assert np.allclose(height / height.max(), count / count.max(), atol=0.01)
-    x, _ = bars(root, 1)
+    x, other = bars(root, 1)
+    assert other.max() == height.max()  # both use all of their room
     assert len(x) == 1 and abs(x[0] - (left + right) / 2 + 0.2 * (right - left) / 2) < 5
     words = " ".join(e.text for e in root.iter(SVG + "text"))
     assert "\u03b8 \u2212 60\u00b0" in words and "\u03b8\u2080 \u2212 45.5\u00b0" in words

@@ -447,6 +447,26 @@ def test_closing_a_tab_ends_its_search_and_forgets_it(serve, run, gate):
     run(work())
 
 
+def test_a_closed_tab_leaves_its_scene_to_one_other_tab_which_shows_its_own_net(serve, run):
+    async def work():
+        async with opened(serve, "first") as first:
+            await arrived(first, "?m=4&n=3&families=d1&parallelograms=1", True)
+            left = first.scene
+            first.close()  # and again at the end
+        async with opened(serve, "second") as second, opened(serve, "third") as third:
+            assert second.scene is not third.scene
+            assert left in (second.scene, third.scene)
+            for app, size in ((second, 5), (third, 6)):
+                await arrived(app, f"?m={size}&n=2&families=u,v")
+            for app, size in ((second, 5), (third, 6)):
+                assert np.allclose(app.scene.faces.points, made(m=size, n=2).V, atol=1e-6)
+                assert app.scene.faces.n_cells == 2 * size
+                assert app.scene.curves.n_cells == 3 * size + 2 * (size + 1)
+                assert app.scene.plotter.background_color == look.LIGHT.background
+
+    run(work())
+
+
 # --- files, given nets --------------------------------------------------------------------
 
 
@@ -913,10 +933,18 @@ print("alive")
 """
 
 
-def test_the_process_outlives_its_tabs(serve):
-    # In a process of its own: an error here, in VTK's destructors, would end that of the tests.
-    done = subprocess.run([sys.executable, "-c", TABS], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "alive\n"), done.stderr[-2000:]
+@pytest.fixture(scope="module", autouse=True)
+def elsewhere():
+    """A process of its own for TABS, as an error in VTK's destructors ends it; begun early."""
+    options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, "-c", TABS], **options) as process:
+        yield process
+        process.kill()
+
+
+def test_the_process_outlives_its_tabs(serve, elsewhere):
+    out, errors = elsewhere.communicate(timeout=LIMIT)
+    assert (elsewhere.returncode, out) == (0, "alive\n"), errors[-2000:]
 
 
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
