@@ -1076,6 +1076,8 @@ def test_a_given_net_may_bring_its_own_picture_and_sight(door):
     assert notebook.show_net(V, Q, sight=(1.0, 0.2)).picture == mine
     with pytest.raises(ValueError, match="vertex"):
         notebook.show_net(V[:-1], Q)
+    with pytest.raises(ValueError, match="families = 'w'"):
+        notebook.show_net(V, Q, ["u", "w"])
 
 
 @pytest.mark.parametrize("prefix", ["/user/ada/", "/hub/user/bob%40x/lab/"])

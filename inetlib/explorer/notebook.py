@@ -68,12 +68,14 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
     """A net as a `Live` page of a notebook, with the numbers of the explorer beside it.
 
     V: (n, 3), Q: (f, 4); families: names; sight: azimuth and elevation of the still picture,
-    radians; picture: another one, PNG bytes.
+    radians; picture: another one, PNG bytes.  ValueError for arrays that are no net and for
+    names of no family.
 
     Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     session = Session(net=(V, Q))
-    session.change(families=families)
+    if problems := session.change(families=families):
+        raise ValueError("; ".join(problems))
     picture = picture or session.save(".png", *sight)
     query = "?families=" + ",".join(session.choice.families)
     door, key = _open_door(), secrets.token_hex(8)
