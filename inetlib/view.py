@@ -104,16 +104,16 @@ def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), liv
     return plotter
 
 
-def _aim(camera, V, azimuth, elevation):
+def _aim(camera, V, azimuth, elevation, aspect=SIZE[0] / SIZE[1]):
     """Orthographic, like `plot.camera`, and as near as the whole net allows."""
-    ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
-    axes = np.array([[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
+    flat, near = plot.camera(azimuth, elevation)(np.eye(3))
+    axes = np.vstack([flat.T, near])  # to the right, up, towards the viewer
     low, high = (V @ axes.T).min(axis=0), (V @ axes.T).max(axis=0)
     middle = axes.T @ (low + high) / 2
     camera.parallel_projection = True
     camera.focal_point, camera.up = middle, axes[1]
     camera.position = middle + 2 * np.linalg.norm(high - low) * axes[2]
-    camera.parallel_scale = 0.53 * max((high - low)[1], (high - low)[0] * SIZE[1] / SIZE[0])
+    camera.parallel_scale = 0.53 * max((high - low)[1], (high - low)[0] / aspect)
 
 
 def _polylines(pyvista, V, lines):

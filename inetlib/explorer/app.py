@@ -37,17 +37,9 @@ class App:
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
-        for call in (
-            self.arrive,
-            self.fit,
-            self.from_above,
-            self.from_side,
-            self.refit,
-            self.run,
-            self.stop,
-        ):
+        calls = self.arrive, self.save, self.run, self.stop
+        for call in (*calls, self.fit, self.refit, self.from_above, self.from_side):
             self.server.trigger(call.__name__)(call)
-        self.server.trigger("save")(self.save)
 
     def close(self):
         """Forget the tab: end its search, free its memory, once.
@@ -166,36 +158,32 @@ class App:
 
         Paper: Sec. 3-6 (explorer).
         """
-        if aspect is not None:
-            self.aspect = float(aspect)
         kind = "cover" if self.session.given else self.session.choice.kind
-        self._look(scene.sight(kind, self.session.V))
+        self._look(scene.sight(kind, self.session.V), aspect)
 
     def refit(self, aspect):
         """The first scene is there: see the whole net from where it was to be seen.
 
         Paper: Sec. 3-6 (explorer).
         """
-        self.aspect = float(aspect)
-        self._look(self.sight)
+        self._look(self.sight, aspect)
 
     def from_above(self, aspect=None):
         """See the whole net from above.
 
         Paper: Sec. 3-6 (explorer).
         """
-        self.aspect = float(aspect or self.aspect)
-        self._look((-90.0, 90.0))
+        self._look(scene.VIEWS["plane"], aspect)
 
     def from_side(self, aspect=None):
         """See the whole net from the side.
 
         Paper: Sec. 3-6 (explorer).
         """
-        self.aspect = float(aspect or self.aspect)
-        self._look((-60.0, 15.0))
+        self._look((-60.0, 15.0), aspect)
 
-    def _look(self, sight):
+    def _look(self, sight, aspect=None):
+        self.aspect = float(aspect or self.aspect)
         V = self.session.V
         if V is None or sight is None:
             return

@@ -127,14 +127,16 @@ def changed(choice, **values):
     """(the choice with these values, sentences on those that are refused).
 
     Values may be texts, as in a link.  Refused values leave the choice as it was.  With the
-    lock on, one angle takes the other along; turning it on makes theta0 equal to theta.
+    lock on, one angle takes the other along; turning it on makes theta0 equal to theta.  A
+    bending that a newly chosen surface does not have is lowered to its largest.
 
     Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     good, problems = {}, []
-    for name, value in values.items():
+    for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending
         try:
-            good[name] = _checked(choice, name, value)
+            surface = good.get("surface", choice.surface)
+            good[name] = _checked(replace(choice, surface=surface), name, values[name])
         except ValueError as error:
             problems.append(str(error))
     locked = good.get("lock", choice.lock)
@@ -156,8 +158,7 @@ def _checked(choice, name, value):
             raise ValueError(f"{name} = {_short(value)}: one of {known} is wanted")
         return value
     if name in RANGES:
-        rolled = replace(choice, surface="rolled")  # the wider range: bent down later
-        return _number(value, name, limits(rolled, name))
+        return _number(value, name, limits(choice, name))
     if name == "radii":
         return _radii(value)
     if name == "families":

@@ -82,18 +82,8 @@ class Scene:
 
         Paper: Sec. 3-6 (explorer).
         """
-        a, e = np.radians([azimuth, elevation])
-        ca, sa, ce, se = np.cos(a), np.sin(a), np.cos(e), np.sin(e)
-        axes = np.array([[-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]])
-        low, high = (V @ axes.T).min(axis=0), (V @ axes.T).max(axis=0)
-        middle = axes.T @ (low + high) / 2
-        size = max(np.linalg.norm(high - low), 1e-12)
-        scale = 0.54 * max((high - low)[1], (high - low)[0] / aspect, 1e-6 * size)
-        camera = self.plotter.camera
-        camera.parallel_projection, camera.parallel_scale = True, scale
-        camera.focal_point, camera.position = middle, middle + 3 * size * axes[2]
-        camera.up = axes[1]
-        return camera
+        view._aim(self.plotter.camera, V, *np.radians([azimuth, elevation]), aspect)
+        return self.plotter.camera
 
 
 def sight(kind, V):

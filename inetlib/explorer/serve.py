@@ -122,25 +122,32 @@ class Door:
         app = App(secrets.token_hex(16), net=net, **self.options)
         entry = app, socket
         self.tabs.add(entry)
-        task = app.server.start(backend="generic", exec_mode="task")
-        await app.server.ready
-        connection = await app.server._server.ws.connect()
-
-        async def forward(binary, content):
-            if not socket.closed:
-                await (socket.send_bytes if binary else socket.send_str)(content)
-
-        connection.on_message(forward)
         try:
-            async for message in socket:
-                await connection.send(message.type == WSMsgType.BINARY, message)
+            await _talk(app.server, socket)
         finally:
             self.tabs.discard(entry)
             app.close()
-            await connection.close()
-            await app.server.stop()
-            await task
         return socket
+
+
+async def _talk(server, socket):
+    """Run a trame server for one browser, until it goes away."""
+    task = server.start(backend="generic", exec_mode="task")
+    await server.ready
+    connection = await server._server.ws.connect()
+
+    async def forward(binary, content):
+        if not socket.closed:
+            await (socket.send_bytes if binary else socket.send_str)(content)
+
+    connection.on_message(forward)
+    try:
+        async for message in socket:
+            await connection.send(message.type == WSMsgType.BINARY, message)
+    finally:
+        await connection.close()
+        await server.stop()
+        await task
 
 
 def _folder(value):

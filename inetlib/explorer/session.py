@@ -5,17 +5,15 @@ Paper: Sec. 3-6 (explorer; beyond the paper).
 
 import importlib.util
 import tempfile
-import threading
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import io, measure, mesh, parallelogram, plot
+from .. import io, measure, mesh, parallelogram, paths, plot
 from . import choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
-PACKAGES = {".dxf": "ezdxf", ".3dm": "rhino3dm"}
 
 
 class Numbers(NamedTuple):
@@ -37,16 +35,7 @@ class Run:
     """One search: the choice it is for, and whether somebody has asked it to stop."""
 
     def __init__(self, choice):
-        self.choice, self._stop = choice, threading.Event()
-
-    def stop(self):
-        """Ask it to end after the step under way."""
-        self._stop.set()
-
-    @property
-    def stopped(self):
-        """Whether it was asked to."""
-        return self._stop.is_set()
+        self.choice, self.stopped = choice, False
 
 
 class Session:
@@ -119,7 +108,7 @@ class Session:
         Paper: Sec. 6 (explorer).
         """
         if self.run is not None:
-            self.run.stop()
+            self.run.stopped = True
 
     def search(self, run, seen=None):
         """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and every step.
@@ -242,5 +231,5 @@ def missing(suffix):
 
     Paper: Sec. 6 (files; beyond the paper).
     """
-    package = PACKAGES.get(suffix, "")
+    package = paths.PACKAGES.get(suffix, "")
     return package if package and importlib.util.find_spec(package) is None else ""
