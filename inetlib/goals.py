@@ -14,13 +14,18 @@ from scipy.optimize import brentq
 from . import parallelogram
 
 INSIDE = 0.99  # of the range of Eq. (4), for a start
+ALIKE = 1e-9  # radians: two given angles as close as this are meant to be the same
 
 
 class Goal(NamedTuple):
-    """kind: "angles", "theta", "theta0", "lam", "mu", "equal" or "free"; values: see `goal`."""
+    """kind: "angles", "theta", "theta0", "lam", "mu", "equal" or "free"; values: see `goal`.
+
+    equal: theta = theta0 is wanted in the end; the paper has fewer equations for that.
+    """
 
     kind: str
     values: tuple
+    equal: bool = False
 
 
 def goal(theta=None, theta0=None, lam=None, mu=None, equal=False):
@@ -42,7 +47,10 @@ def goal(theta=None, theta0=None, lam=None, mu=None, equal=False):
     if len(known) < 2:
         kind, value = next(iter(known.items()), ("free", None))
         return Goal(kind, () if value is None else (_parameter(kind, value),))
-    return Goal("angles", _both(known))
+    theta, theta0 = _both(known)
+    if abs(theta - theta0) <= ALIKE:  # one angle, twice: lam and mu from it may differ in a bit
+        return _equal({"theta": theta})
+    return Goal("angles", (theta, theta0))
 
 
 def _checked(name, x):
@@ -60,13 +68,13 @@ def _parameter(kind, value):
 
 
 def _equal(known):
-    angle = {known[k] for k in known if k.startswith("theta")}
-    ratio = {known[k] for k in known if not k.startswith("theta")}
-    if len(angle) + len(ratio) > 1:
+    angles = [x for name, x in known.items() if name.startswith("theta")]
+    ratios = [x for name, x in known.items() if not name.startswith("theta")]
+    if (angles and ratios) or np.ptp(angles or ratios or [0.0]) > ALIKE:
         raise ValueError("with equal=True one angle or one ratio is wanted, and no other value")
-    if ratio:
-        angle = {float(parallelogram.angles(*2 * tuple(ratio))[0])}
-    return Goal("angles", 2 * tuple(angle)) if angle else Goal("equal", ())
+    if ratios:
+        angles = [float(parallelogram.angles(ratios[0], ratios[0])[0])]
+    return Goal("angles", (angles[0], angles[0]), True) if angles else Goal("equal", (), True)
 
 
 def _both(known):
@@ -173,6 +181,5 @@ def towards(goal, start, step):
     start, end = np.array(start), np.array(goal.values)
     far = np.abs(end - start).max(initial=0.0)
     count = max(1, int(np.ceil(far / step - 1e-9)))
-    return [Goal(goal.kind, tuple(start + (end - start) * k / count)) for k in range(1, count)] + [
-        goal
-    ]
+    between = (start + (end - start) * k / count for k in range(1, count))
+    return [*(goal._replace(values=tuple(values)) for values in between), goal]

@@ -34,7 +34,7 @@ class Layout(NamedTuple):
 def layout(Q, count, theta_mode):
     """The `Layout` of a mesh of `count` vertices.
 
-    Paper: Eq. (17), Eq. (18), Table 1.
+    Paper: Eq. (17), Eq. (18), Eq. (21), Table 1.
     """
     F, start = len(Q), 3 * count
     names = ["La", "Lb"] if theta_mode else ["La", "Lb", "Lp", "Lq", "c1", "c2"]
@@ -43,14 +43,6 @@ def layout(Q, count, theta_mode):
     common = ["c1"] if theta_mode else ["lam", "mu"]
     at |= {name: np.full(F, start + k) for k, name in enumerate(common)}
     return Layout(theta_mode, linear.coordinates(Q), at, start + len(common))
-
-
-def is_theta_mode(goal):
-    """Whether the goal is theta = theta0, for which the paper has fewer equations.
-
-    Paper: Eq. (21).
-    """
-    return goal.kind == "equal" or (goal.kind == "angles" and goal.values[0] == goal.values[1])
 
 
 def start(lay, V, Q):
@@ -133,7 +125,7 @@ def size(Q, count, goal):
 
     Paper: Table 1.
     """
-    lay = layout(Q, count, is_theta_mode(goal))
+    lay = layout(Q, count, goal.equal)
     x = np.ones(lay.columns)
     rows = [f(x[index], *more)[0].size for f, index, more in equations(lay, goal)]
     return lay.columns, sum(rows)

@@ -194,9 +194,8 @@ def paper(log, via, stride, iterations, solve=None):
     V, lay = given.V, None
     for k in range(iterations):
         goal = way[k] if k < min(len(way), iterations - 2) else given.goal
-        mode = guided.is_theta_mode(goal)
-        if lay is None or mode != lay.theta_mode:
-            lay = guided.layout(given.Q, len(V), mode)
+        if lay is None or goal.equal != lay.theta_mode:
+            lay = guided.layout(given.Q, len(V), goal.equal)
             x = guided.start(lay, V / diagonal, given.Q)
         d = guided.step(given, lay, goal, x, diagonal, log.seconds, k < iterations - 2, solve)
         x = x + d

@@ -77,6 +77,20 @@ def test_the_way_has_small_strides_and_ends_at_the_goal():
     assert goals.towards(goals.goal(), (), 0.2) == [goals.goal()]
 
 
+def test_theta_equal_to_theta0_is_said_by_the_goal_and_not_by_a_last_bit():
+    after = np.nextafter(1.1, 4)
+    one = goals.goal(1.1, 1.1)
+    assert one.equal and goals.goal(equal=True).equal
+    assert goals.goal(1.1, after) == goals.goal(1.1, after, equal=True) == one
+    assert goals.goal(after, 1.1).equal and goals.goal(lam=1.2, mu=np.nextafter(1.2, 2)).equal
+    assert not goals.goal(1.1, 1.1 + 1e-8).equal
+    assert not (goals.goal(theta=1.1).equal or goals.goal().equal or goals.goal(lam=1.1).equal)
+    for start in ((1.5, 1.5), (1.5, np.nextafter(1.5, 4)), (1.6, 1.4)):
+        way = goals.towards(one, start, 0.2)
+        assert all(goal.equal for goal in way) and way[-1] is one
+    assert not any(goal.equal for goal in goals.towards(goals.goal(1.0, 2.0), (1.5, 1.5), 0.2))
+
+
 @pytest.mark.parametrize(
     ("kwargs", "words"),
     [

@@ -35,7 +35,7 @@ def test_the_start_is_a_solution_on_a_net_of_these_angles(angles):
     z = conformal.sheared_grid(*angles, 4, 3, origin=1 + 1j, edge=0.3)
     V, Q = conformal.quads(z**2)
     goal = goals.goal(*angles)
-    lay = guided.layout(Q, len(V), guided.is_theta_mode(goal))
+    lay = guided.layout(Q, len(V), goal.equal)
     x = guided.start(lay, V, Q)
     residual, H = guided.hard(lay, goal, x)
     np.testing.assert_allclose(residual, 0, atol=1e-10)
@@ -49,7 +49,7 @@ def test_the_jacobian_of_all_equations_together():
     Q = mesh.grid_quads(3, 2)
     for wanted in ({"theta": 1.0, "theta0": 1.2}, {"theta": 1.0, "theta0": 1.0}, {"mu": 1.3}):
         goal = goals.goal(**wanted)
-        lay = guided.layout(Q, len(V), guided.is_theta_mode(goal))
+        lay = guided.layout(Q, len(V), goal.equal)
         x = guided.start(lay, V, Q) + 0.1
         d = np.random.default_rng(1).normal(size=x.size)
         _, H = guided.hard(lay, goal, x)
@@ -99,6 +99,19 @@ def test_both_linear_solvers_make_the_same_steps():
         for formulation in ("paper", "paper, splu")
     )
     np.testing.assert_allclose(one.V, two.V, atol=1e-9)
+
+
+def test_goals_one_bit_apart_have_the_same_equations():
+    V, Q = patch(5)
+    assert solver.optimize(V, Q, 1.3, 1.3, formulation="paper, splu", iterations=3).sizes[1] == 101
+    one, two = (
+        solver.optimize(V, Q, 1.3, x, formulation="paper, splu", iterations=5)
+        for x in (1.3, np.nextafter(1.3, 0))
+    )
+    assert one.sizes == two.sizes
+    np.testing.assert_allclose(one.V, two.V, atol=1e-12)
+    for a, b in zip(one.history[1:], two.history[1:], strict=True):
+        assert a.residual == pytest.approx(b.residual, rel=1e-6)
 
 
 def test_fixed_vertices_stay_in_both_formulations():
