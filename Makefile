@@ -7,12 +7,13 @@ BIN := .venv/bin
 endif
 READY := .venv/ready
 
-.PHONY: help figures test test-fast test-browser notebooks explore bench lint clean
+.PHONY: help figures test test-fast test-long test-browser notebooks explore bench lint clean
 
 help:
 	@echo "make figures    run every notebook and redraw figures/"
 	@echo "make test       all tests, every notebook rerun from the first cell"
 	@echo "make test-fast  the tests without the notebooks and without a browser"
+	@echo "make test-long  what another processor would draw, all settings, some 20 minutes"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
 	@echo "make explore    turn the angles of nets in your browser (FILE=surface.obj for your own)"
 	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
@@ -30,7 +31,10 @@ test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook and not browser"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook and not browser and not elsewhere"
+
+test-long: $(READY)
+	$(BIN)/python -m pytest -m "long or elsewhere" --long -n auto --dist load
 
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py

@@ -19,14 +19,15 @@ from . import mesh
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 STYLE = files("inetlib") / "inet.mplstyle"
+TIE = 1e-9  # of the range of some numbers: closer ones count as the same on every machine
 
 
 def use_style():
-    """Make the project's style the default of this session.
+    """Make the project's style the default of this session, whatever the user's own one is.
 
     Paper: Figs. 1-13 (drawing).
     """
-    plt.style.use(str(STYLE))
+    plt.style.use(["default", str(STYLE)])
 
 
 def canvas(panels, width, height, ratios=None):
@@ -205,6 +206,21 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
     return rgb * (1 - depth * (1 - np.abs(normal @ light)))[:, None]
 
 
+def order(keys):
+    """The places of the keys from the smallest to the largest; ties keep their order.
+
+    keys: (k,) numbers.  Neighbours closer than `TIE` times the range of all are ties: which of
+    two computed numbers is larger by its last digits differs from machine to machine.
+
+    Paper: Figs. 1-13 (drawing).
+    """
+    keys = np.asarray(keys, dtype=float)
+    rising = np.argsort(keys, kind="stable")
+    apart = np.diff(keys[rising]) > TIE * np.ptp(keys)
+    level = np.concatenate([[0], np.cumsum(apart)])
+    return rising[np.lexsort((rising, level))]
+
+
 def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     """A surface and curves on it, painted from the back to the front as vectors.
 
@@ -232,8 +248,7 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
         inside += ["none"] * (len(flat) - 1)
         edges += [colour] * (len(flat) - 1)
         widths += [width] * (len(flat) - 1)
-    order = np.argsort(keys, kind="stable")
-    picked = ([values[k] for k in order] for values in (paths, inside, edges, widths))
+    picked = ([values[k] for k in order(keys)] for values in (paths, inside, edges, widths))
     paths, inside, edges, widths = picked
     collection = PathCollection(
         paths, facecolors=inside, edgecolors=edges, linewidths=widths, capstyle="round"

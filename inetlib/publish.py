@@ -1,7 +1,8 @@
-"""Writing a figure: SVG and PNG with stable bytes, and its entry in the manifest.
+"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed.
 
 A drawing (see `inetlib.drawings`) is a `Drawing`; `save` writes it and `figures/manifest.json`
-remembers the function, its parameters, a hash of the data drawn and the numbers claimed.
+remembers the function, its parameters, the hash of the file of its data and the numbers
+claimed.  On another machine the last digits of all these differ: what shows the same is kept.
 
 Paper: Figs. 1-13.
 """
@@ -11,7 +12,7 @@ import io
 import json
 import os
 import tempfile
-from contextlib import ExitStack
+import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,9 +20,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import PIL.Image
 
-from . import measure
+from . import measure, same
 
-DIGITS = 6  # of the data in the hash; angles are reported to 1e-9 degrees
+DIGITS = 7  # decimals of the data that are stored
 
 
 class Drawing(NamedTuple):
@@ -45,24 +46,6 @@ class Drawing(NamedTuple):
     claims: dict
 
 
-def digest(data):
-    """SHA-256 of arrays rounded to 1e-6, names and shapes included; -0 counts as 0.
-
-    data: {name: array of numbers, real or complex}.
-
-    Paper: Figs. 1-13 (manifest).
-    """
-    total = hashlib.sha256()
-    for name in sorted(data):
-        array = np.asarray(data[name])
-        if np.iscomplexobj(array):
-            array = np.stack([array.real, array.imag], axis=-1)
-        rounded = np.round(array.astype(np.float64), DIGITS) + 0.0
-        total.update(f"{name}{rounded.shape}".encode())
-        total.update(np.ascontiguousarray(rounded, dtype="<f8").tobytes())
-    return total.hexdigest()
-
-
 def deviations(nets):
     """Largest deviation of theta and theta0, degrees, over all faces of all nets.
 
@@ -83,43 +66,135 @@ def deviations(nets):
 
 
 def save(drawing, folder):
-    """Write folder/NAME.svg, folder/NAME.png and the figure's entry in folder/manifest.json.
+    """Write the figure into a folder, unless what is there shows the same; its manifest entry.
 
-    All three are written under temporary names and renamed at the end: when anything fails,
-    the old files stay.  `folder` is made when only its last part is missing.  Returns the
-    manifest's entry.
+    folder/NAME.svg, folder/NAME.png, folder/data/NAME.npz and the entry in
+    folder/manifest.json go together: where one of them differs from the new drawing by more
+    than the tolerances of `same`, all are replaced, else all are kept.  The new ones are made
+    under temporary names first: when anything fails, the old files stay.  `folder` is made
+    when only its last part is missing.
 
     Paper: Figs. 1-13.
     """
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
     manifest = read_manifest(folder)
-    theta_off, theta0_off = deviations(drawing.nets)
-    entry = {
-        "function": drawing.function,
-        "parameters": drawing.parameters,
-        "sha256": digest(drawing.data),
-        "max_deviation_theta_deg": _rounded(theta_off),
-        "max_deviation_theta0_deg": _rounded(theta0_off),
-        "claims": drawing.claims,
-    }
-    manifest[drawing.name] = entry
-    text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False)
-    names = "manifest.json", f"{drawing.name}.svg", f"{drawing.name}.png"
-    with ExitStack() as stack:
-        listing, svg, png = (stack.enter_context(_replacing(folder / name)) for name in names)
-        drawing.figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
-        drawing.figure.savefig(png, format="png", metadata={"Software": None})
-        Path(listing).write_text(text + "\n", encoding="utf-8", newline="\n")
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".new-") as fresh:
+        fresh = Path(fresh)
+        entry = _draw(drawing, fresh)
+        if not differences(drawing.name, fresh, folder):
+            return manifest[drawing.name]
+        text = json.dumps(dict(sorted((manifest | {drawing.name: entry}).items())), indent=2)
+        (fresh / "manifest.json").write_text(text + "\n", encoding="utf-8", newline="\n")
+        (folder / "data").mkdir(exist_ok=True)
+        for name in (*_files(drawing.name), "manifest.json"):  # the last vouches for the others
+            os.replace(fresh / name, folder / name)
     return entry
 
 
+def _files(name):
+    return f"{name}.svg", f"{name}.png", f"data/{name}.npz"
+
+
+def _draw(drawing, folder):
+    """Write the three files of a drawing and a manifest of it alone; its entry."""
+    svg, png, data = (folder / name for name in _files(drawing.name))
+    data.parent.mkdir()
+    figure = drawing.figure
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    svg.write_text(same.plain_svg(text.getvalue()), encoding="utf-8", newline="\n")
+    figure.savefig(png, format="png", metadata={"Software": None})
+    np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})
+    theta_off, theta0_off = (None if np.isnan(x) else x for x in deviations(drawing.nets))
+    entry = {
+        "function": drawing.function,
+        "parameters": _rounded(drawing.parameters),
+        "sha256": _hash(data),
+        "max_deviation_theta_deg": _rounded(theta_off),
+        "max_deviation_theta0_deg": _rounded(theta0_off),
+        "claims": _rounded(drawing.claims),
+    }
+    text = json.dumps({drawing.name: entry}, indent=2, allow_nan=False)
+    (folder / "manifest.json").write_text(text, encoding="utf-8")
+    return json.loads(text)[drawing.name]
+
+
+def _plain(array):
+    """An array rounded, complex numbers as pairs; -0 is 0."""
+    array = np.asarray(array)
+    if np.iscomplexobj(array):
+        array = np.stack([array.real, array.imag], axis=-1)
+    return np.round(array.astype("<f8"), DIGITS) + 0.0
+
+
+def _rounded(value):
+    """The same with floats rounded to 1e-9; None for nan."""
+    if isinstance(value, dict):
+        return {name: _rounded(x) for name, x in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(x) for x in value]
+    if isinstance(value, float) and np.isfinite(value):
+        return round(value, 9) + 0.0
+    return value
+
+
+def _hash(path):
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def differences(name, one, two):
+    """What differs between the figure `name` in two folders by more than the tolerances of `same`.
+
+    Returns a list of words, empty where both folders hold the same figure: "missing",
+    "unreadable", or some of "manifest", "data NAME" for each array, "svg" and "png";
+    "manifest" also where that of `two` does not have the hash of its data.
+
+    Paper: Figs. 1-13 (files).
+    """
+    one, two = Path(one), Path(two)
+    pairs = [(one / file, two / file) for file in _files(name)]
+    entries = [read_manifest(folder).get(name) for folder in (one, two)]
+    if None in entries or not all(path.exists() for pair in pairs for path in pair):
+        return ["missing"]
+    try:
+        return _differences(entries, *pairs)
+    except (OSError, EOFError, ValueError, zipfile.BadZipFile):  # a broken file, half a merge
+        return ["unreadable"]
+
+
+def _differences(entries, svg, png, data):
+    """`differences` of two entries of manifests and three pairs of paths."""
+    stated = [{k: x for k, x in entry.items() if k != "sha256"} for entry in entries]
+    good = same.claims(*stated) and entries[1]["sha256"] == _hash(data[1])
+    found = [] if good else ["manifest"]
+    found += [f"data {array}" for array in same.data(*map(read_data, data))]
+    if not same.svg(*(path.read_text(encoding="utf-8") for path in svg)):
+        found.append("svg")
+    if not same.picture(*(path.read_bytes() for path in png)):
+        found.append("png")
+    return found
+
+
+def read_data(path):
+    """The arrays of a figure's data file, {name: array}; complex ones are pairs of numbers.
+
+    Paper: Figs. 1-13 (data).
+    """
+    with open(path, "rb") as file, np.load(file, allow_pickle=False) as found:
+        return {name: found[name] for name in found.files}
+
+
 def save_text(text, path):
-    """Write a text file under a temporary name, then rename it: never half a file.
+    """Write a text file unless what is there says the same (see `same.text`).
+
+    Under a temporary name, then renamed: never half a file.
 
     Paper: Table 1.
     """
     path = Path(path)
+    if path.exists() and same.text(path.read_text(encoding="utf-8"), text):
+        return
     with _replacing(path) as name:
         Path(name).write_text(text, encoding="utf-8", newline="\n")
 
@@ -155,10 +230,6 @@ def read_manifest(folder):
         raise ValueError(
             f"{path} is not a JSON object: delete it and make the figures again"
         ) from error
-
-
-def _rounded(degrees):
-    return None if np.isnan(degrees) else round(degrees, 9) + 0.0
 
 
 class _replacing:

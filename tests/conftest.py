@@ -14,6 +14,17 @@ settings.register_profile("still", derandomize=True, deadline=None, database=Non
 settings.load_profile("still")
 
 
+def pytest_addoption(parser):
+    parser.addoption("--long", action="store_true", help="the tests marked long, too: half an hour")
+
+
+def pytest_collection_modifyitems(config, items):
+    if not config.getoption("--long"):
+        long = [item for item in items if item.get_closest_marker("long")]
+        config.hook.pytest_deselected(items=long)
+        items[:] = [item for item in items if item not in long]
+
+
 @pytest.fixture(scope="module")
 def chromium():
     """A running Chromium, driven by playwright; skipped with the reason where there is none."""

@@ -1,4 +1,4 @@
-"""`publish`: stable bytes, honest numbers, and no half-written file."""
+"""`publish`: kept unless it changed, stable bytes, honest numbers, and no half-written file."""
 
 import hashlib
 import json
@@ -17,19 +17,19 @@ def draw():
     """Makes drawings of a net; closes their figures at the end."""
     figures = []
 
-    def make(name="fig00", theta=T, claims=None, parameters=None, nets=None):
+    def make(name="fig00", theta=T, claims=None, parameters=None, nets=None, data=None, title=""):
         figure, axes = plot.canvas([["A", "B"]], 3, 1.5)
         figures.append(figure)
         V, Q = conformal.quads(conformal.sheared_grid(theta, T0, 3, 3))
         plot.net(axes["A"], V, Q)
         plot.black_quads(axes["B"], V, Q)
-        plot.panel(axes["A"], "A", "a net")
+        plot.panel(axes["A"], "A", title or "a net")
         return publish.Drawing(
             name=name,
             figure=figure,
             function="inetlib.drawings.fig00.draw",
             parameters={"theta": round(theta, 9)} if parameters is None else parameters,
-            data={"V": V, "Q": Q},
+            data={"V": V, "Q": Q} if data is None else data,
             nets=[(V, Q, theta, T0)] if nets is None else nets,
             claims={"faces": 9} if claims is None else claims,
         )
@@ -39,63 +39,13 @@ def draw():
         plt.close(figure)
 
 
+FILES = {"fig00.svg", "fig00.png", "data/fig00.npz", "manifest.json"}
+
+
 def contents(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
-
-
-# --- the hash -----------------------------------------------------------------------------
-
-DATA = {"V": np.arange(12).reshape(4, 3) / 7, "z": np.array([1 + 2j, -0.5j])}
-
-
-def micro(values):
-    """Values in the middle of a rounding cell, where small noise cannot carry them out."""
-    return np.round(np.asarray(values) * 1e6) / 1e6
-
-
-def test_the_digest_is_the_sha256_of_names_shapes_and_rounded_numbers():
-    data = {"b": [0.1234564], "a": np.array([[2, 1]])}
-    text = b"a(1, 2)" + np.array([2.0, 1.0]).tobytes() + b"b(1,)" + np.array([0.123456]).tobytes()
-    assert publish.digest(data) == hashlib.sha256(text).hexdigest()
-
-
-def test_the_digest_ignores_rounding_noise():
-    quiet = {name: micro(values) for name, values in DATA.items()}
-    rng = np.random.default_rng(1)
-    noisy = {name: x + 1e-9 * rng.uniform(-1, 1, x.shape) for name, x in quiet.items()}
-    assert not np.array_equal(noisy["V"], quiet["V"])
-    assert publish.digest(noisy) == publish.digest(quiet)
-
-
-def test_the_digest_takes_minus_zero_and_negative_noise_for_zero():
-    zero = publish.digest({"x": np.zeros(3), "z": np.zeros(2, dtype=complex)})
-    assert zero == publish.digest({"x": -np.zeros(3), "z": -np.zeros(2, dtype=complex)})
-    assert zero == publish.digest({"x": np.full(3, -1e-12), "z": np.full(2, -1e-12 - 1e-12j)})
-
-
-def test_the_digest_does_not_depend_on_layout_type_or_order():
-    V = np.arange(6.0).reshape(2, 3)
-    wanted = publish.digest({"V": V, "n": [1]})
-    assert wanted == publish.digest({"n": np.array([1.0]), "V": V})
-    assert wanted == publish.digest({"V": np.asfortranarray(V), "n": [1]})
-    assert wanted == publish.digest({"V": V.astype(np.int32), "n": np.array([1], dtype=np.uint8)})
-    assert wanted == publish.digest({"V": V.tolist(), "n": (1,)})
-
-
-CHANGED = {
-    "a coordinate": DATA | {"V": DATA["V"] + 1e-5 * np.eye(4, 3)},
-    "an imaginary part": DATA | {"z": DATA["z"] + np.array([0, 1e-5j])},
-    "the shape": DATA | {"V": DATA["V"].reshape(3, 4)},
-    "the order": DATA | {"V": DATA["V"][::-1]},
-    "a name": {"W": DATA["V"], "z": DATA["z"]},
-    "less": {"V": DATA["V"]},
-    "more": DATA | {"x": np.zeros(0)},
-}
-
-
-@pytest.mark.parametrize("what", CHANGED)
-def test_the_digest_notices_a_change_of(what):
-    assert publish.digest(CHANGED[what]) != publish.digest(DATA)
+    """{name: bytes} of all files below a folder."""
+    paths = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
 
 
 # --- deviations ---------------------------------------------------------------------------
@@ -123,7 +73,7 @@ def test_saving_twice_gives_the_same_bytes(draw, tmp_path):
     drawing = draw()
     publish.save(drawing, tmp_path)
     first = contents(tmp_path)
-    assert set(first) == {"fig00.svg", "fig00.png", "manifest.json"}
+    assert set(first) == FILES
     publish.save(drawing, tmp_path)
     assert contents(tmp_path) == first
     publish.save(draw(), tmp_path)
@@ -145,7 +95,7 @@ def test_the_manifest_holds_what_stands_behind_the_figure(draw, tmp_path):
     assert entry == {
         "function": "inetlib.drawings.fig00.draw",
         "parameters": {"theta": round(T, 9)},
-        "sha256": publish.digest(drawing.data),
+        "sha256": hashlib.sha256(contents(tmp_path)["data/fig00.npz"]).hexdigest(),
         "max_deviation_theta_deg": 0.0,
         "max_deviation_theta0_deg": 0.0,
         "claims": {"faces": 9},
@@ -171,6 +121,111 @@ def test_a_figure_without_nets_has_no_deviation_in_the_manifest(draw, tmp_path):
     assert b"NaN" not in (tmp_path / "manifest.json").read_bytes()
 
 
+def test_the_data_are_there_to_be_read(draw, tmp_path):
+    drawing = draw(data={"z": np.array([1 / 3, 1 - 2j / 3]), "n": np.array([1, 2]), "o": [-1e-12]})
+    publish.save(drawing, tmp_path)
+    found = publish.read_data(tmp_path / "data" / "fig00.npz")
+    assert {name: array.tolist() for name, array in found.items()} == {
+        "z": [[0.3333333, 0.0], [1.0, -0.6666667]],
+        "n": [1.0, 2.0],
+        "o": [0.0],
+    }
+    assert not np.signbit(found["o"]).any()
+
+
+# --- keeping ------------------------------------------------------------------------------
+
+
+def shaken(drawing, size):
+    rng = np.random.default_rng(3)
+    data = {k: x * (1 + size * rng.uniform(-1, 1, x.shape)) for k, x in drawing.data.items()}
+    return drawing._replace(data=data)
+
+
+def test_what_differs_by_the_last_digits_is_kept(draw, tmp_path):
+    claims = {"x": 0.123456, "whole": 60.0}
+    first = publish.save(draw(claims=claims), tmp_path)
+    before = contents(tmp_path)
+    claims = {"x": 0.123457, "whole": 59.999999}
+    other = shaken(draw(theta=T + 1e-13, parameters={"theta": T + 1e-13}, claims=claims), 1e-8)
+    assert publish.save(other, tmp_path) == first
+    assert contents(tmp_path) == before
+
+
+def test_broken_or_missing_files_are_made_again(draw, tmp_path):
+    publish.save(draw(), tmp_path)
+    whole = contents(tmp_path)
+    for name in FILES - {"manifest.json"}:
+        for broken in (b"", b"<<<<<<< ours", whole[name][: len(whole[name]) // 2], None):
+            (tmp_path / name).unlink()
+            if broken is not None:
+                (tmp_path / name).write_bytes(broken)
+            publish.save(draw(), tmp_path)
+            assert contents(tmp_path) == whole, name
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"theta": T + 1e-3, "parameters": {"theta": 1.0472}}, ["data V", "svg", "png"]),
+        ({"parameters": {"theta": 2.0}}, ["manifest"]),
+        ({"claims": {"faces": 8}}, ["manifest"]),
+        ({"nets": []}, ["manifest"]),
+        ({"title": "another net"}, ["svg", "png"]),
+        ({"data": {"V": np.zeros(3)}}, ["data Q", "data V"]),
+    ],
+)
+def test_what_changed_is_named_and_rewritten_alone(draw, tmp_path, change, words):
+    folder, other = tmp_path / "one", tmp_path / "two"
+    for place in (folder, other):
+        publish.save(draw("fig01"), place)
+        publish.save(draw("fig02", parameters={"theta": 1.0472}), place)
+    before = contents(folder)
+    data = change.get("data")
+    drawing = draw("fig02", **{"parameters": {"theta": 1.0472}} | change)
+    entry = publish.save(drawing, folder)
+    assert publish.differences("fig02", folder, other) == words
+    after = contents(folder)
+    changed = {name for name in after if after[name] != before[name]}
+    assert changed <= {name.replace("fig00", "fig02") for name in FILES}
+    assert {"svg": "fig02.svg", "png": "fig02.png"}.get(words[-1], "manifest.json") in changed
+    assert publish.read_manifest(folder)["fig02"] == entry
+    assert publish.differences("fig01", folder, other) == []
+    assert data is None or "data/fig02.npz" in changed
+
+
+def test_data_that_are_not_those_of_the_manifest_are_noticed(draw, tmp_path):
+    folder, other = tmp_path / "one", tmp_path / "two"
+    for place in (folder, other):
+        publish.save(draw(), place)
+    data = publish.read_data(other / "data" / "fig00.npz")
+    np.savez_compressed(other / "data" / "fig00.npz", **data)
+    assert publish.differences("fig00", folder, other) == ["manifest"]
+    assert publish.differences("fig09", folder, other) == ["missing"]
+
+
+def test_a_text_is_kept_unless_it_says_something_else(tmp_path):
+    path = tmp_path / "table.md"
+    publish.save_text("| 7 | 0.25 |\n", path)
+    publish.save_text("| 7 | 0.26 |\n", path)
+    assert path.read_bytes() == b"| 7 | 0.25 |\n"
+    publish.save_text("| 8 | 0.26 |\n", path)
+    assert path.read_bytes() == b"| 8 | 0.26 |\n"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_users_settings_change_no_byte(draw, tmp_path):
+    publish.save(draw(), tmp_path / "one")
+    with plt.rc_context({"font.size": 20, "lines.linewidth": 5, "axes.facecolor": "red"}):
+        plt.rcParams["savefig.bbox"], plt.rcParams["svg.fonttype"] = "tight", "none"
+        plt.rcParams["axes.formatter.use_locale"] = True
+        publish.save(draw(), tmp_path / "two")
+    assert contents(tmp_path / "one") == contents(tmp_path / "two")
+
+
+# --- the manifest -------------------------------------------------------------------------
+
+
 def test_the_manifest_keeps_other_figures_and_is_sorted(draw, tmp_path):
     for name in ("fig02", "fig01", "fig03"):
         publish.save(draw(name), tmp_path)
@@ -184,7 +239,7 @@ def test_the_manifest_keeps_other_figures_and_is_sorted(draw, tmp_path):
 def test_a_folder_with_spaces_is_made_when_only_its_last_part_is_missing(draw, tmp_path):
     folder = tmp_path / "my figures (new)"
     publish.save(draw(), str(folder))
-    assert set(contents(folder)) == {"fig00.svg", "fig00.png", "manifest.json"}
+    assert set(contents(folder)) == FILES
 
 
 def test_a_missing_parent_folder_is_named(draw, tmp_path):

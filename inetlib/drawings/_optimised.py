@@ -17,7 +17,6 @@ WEIGHTS = Weights(fairness=0.0005, closeness=0.001, approximation=0.001, boundar
 EXACT = "#7b9bcb"  # parallelograms without a deviation
 DEVIATION = LinearSegmentedColormap.from_list("deviation", [EXACT, "#a8506a", "#3d0a1e"])
 LIGHT = (-0.45, -0.5, 0.75)
-DIGITS = 4  # of the vertices in the manifest's hash: machines agree on far more
 
 
 def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=(), width=0.45, light=LIGHT):

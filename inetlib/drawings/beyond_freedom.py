@@ -99,7 +99,7 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
         figure,
         "inetlib.drawings.beyond_freedom.draw",
         {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
-        {k: np.round(r.V, _optimised.DIGITS) for k, (_, _, r) in good.items()},
+        {k: r.V for k, (_, _, r) in good.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
         claims,
     )

@@ -112,7 +112,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
         figure,
         "inetlib.drawings.beyond_labels.draw",
         {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
-        {k: np.round(r.V, _optimised.DIGITS) for k, (_, _, _, r) in found.items()},
+        {k: r.V for k, (_, _, _, r) in found.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, _, r in found.values()],
         claims | numbers,
     )

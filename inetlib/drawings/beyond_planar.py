@@ -35,7 +35,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
         figure=figure,
         function="inetlib.drawings.beyond_planar.draw",
         parameters=dict(theta=theta, theta0=theta0, tip=tip, pull=pull),
-        data={k: np.round(net.V, 4) for k, (net, *_) in found.items()} | {"outline": outline},
+        data={k: net.V for k, (net, *_) in found.items()} | {"outline": outline},
         nets=[(net.V, *rest) for net, *rest in found.values()],
         claims=_claims(found),
     )

@@ -116,13 +116,13 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     ]
     claims = {f"{name}: order": _order(x) for name, x in chords.items() if name != "z2"}
     claims["z2: largest deviation, degrees"] = round(float(chords["z2"].max()), 9)
-    data = {f"chords {k}": np.round(x, 5) for k, x in chords.items()}
+    data = {f"chords {k}": x for k, x in chords.items()}
     return publish.Drawing(
         "beyond_star",
         figure,
         "inetlib.drawings.beyond_star.draw",
         {"theta": theta, "theta0": theta0},
-        data | {f"units {k}": np.round(x, 5) for k, x in units.items()},
+        data | {f"units {k}": x for k, x in units.items()},
         exact,
         claims,
     )

@@ -78,7 +78,7 @@ def draw(m=20, n=20, azimuth=-62, elevation=42):
         figure,
         "inetlib.drawings.fig12.draw",
         parameters,
-        {name: np.round(x, _optimised.DIGITS) for name, x in data.items()},
+        data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
     )

@@ -91,7 +91,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
         figure,
         "inetlib.drawings.fig13.draw",
         {"dome": dome, "wave": wave, "azimuth": azimuth, "elevation": elevation},
-        {name: np.round(x, _optimised.DIGITS) for name, x in data.items()},
+        data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | numbers,
     )

@@ -1,0 +1,160 @@
+"""What stands for another machine: other kernels of this processor, and drawn numbers a bit off.
+
+Each setting switches something of the processor off, in fresh processes (see elsewhere.py):
+results that hang on ties, Table 1 and all figures must be as they are here and as stored.  The
+short form has two settings; `make test-long` has all, and all notebooks, twice.
+"""
+
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import elsewhere
+import numpy as np
+import outputs  # tools/outputs.py
+import pytest
+
+from inetlib import publish
+
+ROOT = Path(__file__).resolve().parent.parent
+HERE = Path(__file__).resolve().parent
+FAST = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+SETTINGS = {
+    "default": {},
+    "BLAS of Prescott": {"OPENBLAS_CORETYPE": "Prescott"},
+    "BLAS of Nehalem": {"OPENBLAS_CORETYPE": "Nehalem"},
+    "BLAS of Sandybridge": {"OPENBLAS_CORETYPE": "Sandybridge"},
+    "numpy without " + " ".join(FAST): {"NPY_DISABLE_CPU_FEATURES": " ".join(FAST)},
+    "C library without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"},
+}
+SETTINGS["all of them"] = {k: x for setting in SETTINGS.values() for k, x in setting.items()} | {
+    "OPENBLAS_CORETYPE": "Prescott"
+}
+SHORT = [name for name in SETTINGS if name.startswith(("numpy", "all"))]
+
+
+def lacking(name):
+    """Why a setting says nothing here, or ""."""
+    wanted = SETTINGS[name]
+    if wanted and platform.machine() not in ("x86_64", "AMD64"):
+        return f"{name}: only x86 has these switches, this is {platform.machine()}"
+    if "NPY_DISABLE_CPU_FEATURES" in wanted and not FAST:
+        return f"{name}: numpy found no extension of this processor to switch off"
+    if "OPENBLAS_CORETYPE" in wanted and not elsewhere.kernels():
+        return f"{name}: numpy and SciPy do not use OpenBLAS here"
+    if "GLIBC_TUNABLES" in wanted and platform.libc_ver()[0] != "glibc":
+        return f"{name}: the C library here is not glibc"
+    return ""
+
+
+def in_setting(name, command, folder):
+    """Run a command of this Python in a setting; fails with what it said."""
+    if reason := lacking(name):
+        pytest.skip(reason)
+    done = subprocess.run(
+        [sys.executable, *map(str, command)],
+        env=os.environ | SETTINGS[name] | {"PYTHONPATH": str(folder), "PYTHONWARNINGS": "default"},
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+    return done
+
+
+@pytest.fixture(scope="module")
+def here():
+    return elsewhere.results()
+
+
+def at_most(one, two):
+    """Whether all numbers agree to 1e-9 of the size, whole numbers exactly."""
+    if one.dtype.kind in "iu":
+        return np.array_equal(one, two)
+    return one.shape == two.shape and np.abs(one - two).max() <= 1e-9 * np.ptp(one)
+
+
+def check(name, here, tmp_path):
+    figures = tmp_path / "figures"
+    shutil.copytree(ROOT / "figures", figures)
+    in_setting(name, [HERE / "elsewhere.py", figures], ROOT)
+    kernels, rewritten = json.loads((figures / "rewritten.json").read_text())
+    wanted = SETTINGS[name].get("OPENBLAS_CORETYPE")
+    assert wanted is None or kernels == [wanted]
+    with np.load(figures / "results.npz") as there:
+        assert set(there.files) == set(here)
+        assert [key for key in here if not at_most(here[key], there[key])] == []
+    if not outputs.PINNED:
+        rewritten = {k: x for k, x in rewritten.items() if not set(x) <= {"svg", "png"}}
+    assert rewritten == {}
+
+
+@pytest.mark.elsewhere
+@pytest.mark.parametrize("name", SHORT)
+def test_another_processor_gives_the_same(name, here, tmp_path):
+    check(name, here, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHORT])
+def test_every_other_processor_gives_the_same(name, here, tmp_path):
+    check(name, here, tmp_path)
+
+
+def rewritten(noise, tmp_path):
+    figures = tmp_path / "figures"
+    shutil.copytree(ROOT / "figures", figures)
+    in_setting("default", [HERE / "elsewhere.py", figures, noise], ROOT)
+    return json.loads((figures / "rewritten.json").read_text())[1]
+
+
+@pytest.mark.elsewhere
+@pytest.mark.skipif(
+    not outputs.PINNED, reason="another matplotlib than the pinned one draws otherwise"
+)
+def test_figures_are_kept_when_all_that_is_drawn_is_off_by_rounding(tmp_path):
+    assert rewritten(1e-13, tmp_path) == {}
+
+
+@pytest.mark.long
+def test_figures_are_rewritten_when_all_that_is_drawn_is_off_by_more(tmp_path):
+    found = rewritten(1e-4, tmp_path)
+    assert set(found) == set(publish.read_manifest(ROOT / "figures"))
+    assert all({"svg", "png"} <= set(words) for words in found.values())
+
+
+def test_one_parameter_rewrites_one_figure(tmp_path):
+    """The check can fail: a drawing that is meant to differ is not kept."""
+    from inetlib.drawings import fig04, fig08
+
+    figures = tmp_path / "figures"
+    shutil.copytree(ROOT / "figures", figures)
+    before = {path: path.read_bytes() for path in figures.rglob("*") if path.is_file()}
+    publish.save(fig04.draw(), figures)
+    assert not outputs.PINNED or before == {path: path.read_bytes() for path in before}
+    publish.save(fig08.draw(rows=6), figures)
+    changed = {path.name for path in before if path.read_bytes() != before[path]}
+    assert changed - {"fig04.svg", "fig04.png"} == {
+        *("fig08.svg", "fig08.png", "fig08.npz", "manifest.json")
+    }
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["default", "all of them"])
+def test_all_notebooks_twice_in_another_folder_change_no_file(name, tmp_path):
+    folder = tmp_path / "another folder"
+    for part in ("notebooks", "figures", "inetlib", "tools"):
+        skipped = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", ".new-*")
+        shutil.copytree(ROOT / part, folder / part, ignore=skipped)
+    shutil.copy(ROOT / "constraints.txt", folder)
+    kept = [p for part in ("notebooks", "figures") for p in (folder / part).rglob("*")]
+    before = {path: path.read_bytes() for path in kept if path.is_file()}
+    for _ in range(2):
+        in_setting(name, ["tools/redraw.py"], folder)
+        after = {path: path.read_bytes() for path in before}
+        assert [path.name for path in before if before[path] != after[path]] == []
+    assert not list(folder.rglob(".new-*"))

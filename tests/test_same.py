@@ -1,0 +1,209 @@
+"""`same`: what another machine changes is kept, what somebody changes is noticed."""
+
+import io
+
+import matplotlib.pyplot as plt
+import numpy as np
+import PIL.Image
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inetlib import plot, same
+
+# --- texts --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [
+        ("60.000 degrees", "60.001 degrees"),
+        ("at most 1.22e-11", "at most 1.23e-11"),
+        ("1e-05", "9e-06"),
+        ("-0.50, +1.5", "-0.49, +1.6"),
+        ("", ""),
+        ("no numbers", "no numbers"),
+        (r"$\lambda = 1.618$", r"$\lambda = 1.619$"),
+    ],
+)
+def test_texts_that_say_the_same(one, two):
+    assert same.text(one, two) and same.text(two, one)
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [
+        ("60.000 degrees", "60.002 degrees"),
+        ("at most 1.22e-11", "at most 1.24e-11"),
+        ("7 steps.", "8 steps."),
+        ("7 steps", "7.0 steps"),
+        ("0.5", "-0.5"),
+        ("x1 = 0.1", "x2 = 0.1"),
+        ("fig12", "fig13"),
+        ("0.1", "0.1 0.1"),
+        ("converged 1.0", "not converged 1.0"),
+        ("1.0", "nan"),
+    ],
+)
+def test_texts_that_differ(one, two):
+    assert not same.text(one, two) and not same.text(two, one)
+
+
+@given(st.floats(-1e6, 1e6), st.integers(1, 9))
+def test_a_number_a_last_bit_away_prints_the_same(x, digits):
+    for other in (np.nextafter(x, np.inf), np.nextafter(x, -np.inf)):
+        assert same.text(f"{x:.{digits}f}", f"{other:.{digits}f}")
+        assert same.text(f"{x:.{digits}e}", f"{other:.{digits}e}")
+
+
+# --- claims -------------------------------------------------------------------------------
+
+CLAIMS = {"steps": 7, "good": True, "theta": 60.0, "words": "all", "list": [0.25, None]}
+
+
+def test_claims_are_the_same_within_their_last_digit():
+    assert same.claims(CLAIMS, dict(CLAIMS))
+    assert same.claims(CLAIMS, CLAIMS | {"theta": 59.999999})
+    assert same.claims(CLAIMS, CLAIMS | {"list": (0.26, None)})
+    assert same.claims({"x": 1.047197551}, {"x": 1.04719755})
+    assert same.claims({"x": 0.0}, {"x": 1e-9})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"steps": 8},
+        {"steps": 7.0},
+        {"good": 1},
+        {"theta": 59.998},
+        {"theta": 61.0},
+        {"words": "some"},
+        {"list": [0.27, None]},
+        {"list": [0.25]},
+        {"more": 1},
+    ],
+)
+def test_claims_that_differ(change):
+    assert not same.claims(CLAIMS, CLAIMS | change)
+    assert not same.claims(CLAIMS | change, CLAIMS)
+
+
+# --- data ---------------------------------------------------------------------------------
+
+DATA = {"V": np.arange(12.0).reshape(4, 3), "w": np.array([0.5, -20.0])}
+
+
+def test_data_are_compared_by_the_size_of_the_figure():
+    near = {name: x + 1e-5 for name, x in DATA.items()}  # the size is 20.5
+    assert same.data(DATA, near) == []
+    far = DATA | {"V": DATA["V"] + 3e-5 * np.eye(4, 3)}
+    assert same.data(DATA, far) == ["V"]
+    small = {name: x / 1000 for name, x in DATA.items()}
+    assert same.data(small, {name: x + 1e-5 for name, x in small.items()}) == ["V", "w"]
+
+
+@pytest.mark.parametrize(
+    ("change", "found"),
+    [
+        ({"V": DATA["V"].reshape(3, 4)}, ["V"]),
+        ({"V": DATA["V"][::-1]}, ["V"]),
+        ({"x": np.zeros(0)}, ["x"]),
+        ({"V": DATA["V"] * np.nan}, ["V"]),
+    ],
+)
+def test_data_that_differ(change, found):
+    assert same.data(DATA, DATA | change) == found
+
+
+def test_data_that_are_missing():
+    assert same.data(DATA, {"V": DATA["V"]}) == ["w"]
+    assert same.data({}, {}) == []
+
+
+# --- pictures -----------------------------------------------------------------------------
+
+
+def written(kind, shift=0.0, colour="#336699", text="a"):
+    """A figure with a clip, a marker, polygons and words, as matplotlib writes it."""
+    plot.use_style()
+    figure, axes = plt.subplots(1, 2, figsize=(3, 1.5))
+    for ax in axes:
+        ax.plot([0, 1 / 3 + shift, 1], [0, 1, 0.2], "o-", color=colour)
+        plot.polygons(ax, np.array([[0, 0], [1, 0], [1, 1 / 7 + shift]]), [[0, 1, 2]])
+        ax.set_title(text)
+    file = io.BytesIO()
+    figure.savefig(file, format=kind, metadata={"Date": None} if kind == "svg" else {})
+    plt.close(figure)
+    return file.getvalue() if kind == "png" else file.getvalue().decode()
+
+
+def test_the_names_and_numbers_of_an_svg_are_plain():
+    raw = written("svg")
+    plain = same.plain_svg(raw)
+    assert len(same.HASHED.findall(raw)) >= 4  # else this test sees nothing
+    assert 'id="p-' in plain and "url(#p-" in plain and 'href="#m-' in plain
+    for name in same.re.findall(r'(?:url\(|href=")#([\w-]+)', plain):
+        assert plain.count(f'id="{name}"') == 1
+    for path in same.re.findall(r'\bd="([^"]*)"', plain):
+        assert all(len(x.partition(".")[2]) <= 2 for x in path.split())
+    assert len(plain) < len(raw)
+    assert same.plain_svg(plain) == plain
+
+
+def test_a_plain_svg_looks_like_the_one_it_was_made_from():
+    """The scales of glyphs are left alone, and no coordinate moves more than half a unit."""
+    raw = written("svg")
+    plain = same.plain_svg(raw)
+    old, new = (same.COORDINATE.findall(same.HASHED.sub("", x)) for x in (raw, plain))
+    assert same.re.findall(r"scale\([^)]*\)", raw) == same.re.findall(r"scale\([^)]*\)", plain)
+    paths = [
+        [same.COORDINATE.findall(p) for p in same.re.findall(r'\bd="([^"]*)"', x)]
+        for x in (raw, plain)
+    ]
+    for a, b in zip(*paths, strict=True):
+        np.testing.assert_allclose(np.array(a, float), np.array(b, float), atol=0.00501)
+    assert len(old) > 100 and len(new) > 100
+
+
+def test_an_svg_is_the_same_up_to_hundredths_of_a_point():
+    one, two, three = (same.plain_svg(written("svg", x)) for x in (0, 3e-5, 0.01))
+    assert same.svg(one, one)
+    assert one != two and same.svg(one, two) and same.svg(two, one)
+    assert not same.svg(one, three)
+
+
+def test_an_svg_with_another_colour_or_word_differs():
+    one = same.plain_svg(written("svg"))
+    assert same.svg(one, one.replace("#336699", "#356799"))
+    assert not same.svg(one, same.plain_svg(written("svg", colour="#446699")))
+    assert not same.svg(one, same.plain_svg(written("svg", text="b")))
+    assert not same.svg(one, one.replace("</svg>", "<g></g></svg>"))
+    assert not same.svg(one, one.replace("#336699", "none", 1))
+    assert not same.svg(one, "")
+
+
+def png(array):
+    file = io.BytesIO()
+    PIL.Image.fromarray(array).save(file, format="png")
+    return file.getvalue()
+
+
+def test_pictures_are_the_same_up_to_a_little_antialiasing():
+    grey = np.full((100, 100, 3), 128, dtype=np.uint8)
+    few, one, much, many = grey.copy(), grey.copy(), grey.copy(), grey.copy()
+    few[:5, :20, 0] += 5
+    one[0, 0, 0] += 6
+    much[40:60, 40:60] = 0
+    many[:50] += 3
+    assert same.picture(png(grey), png(grey)) and same.picture(png(grey), png(few))
+    for other in (one, much, many, grey[:99]):
+        assert not same.picture(png(grey), png(other))
+    assert same.picture(png(grey), png(one), 255, 0.005)
+    assert not same.picture(png(grey), png(much), 255, 0.005)
+
+
+def test_pictures_by_matplotlib():
+    one = written("png")
+    assert same.picture(one, written("png", 1e-9))
+    assert not same.picture(one, written("png", 0.05))
+    assert not same.picture(one, written("png", text="b"))

@@ -1,0 +1,65 @@
+"""Whether a cell that was run again shows what is stored below it, within tolerances.
+
+Text may differ by one unit of the last digit it shows, pictures by a little antialiasing (see
+`inetlib.same`).  Two tags of a cell say that more may differ, and why:
+  timing   seconds differ from run to run: what is stored stays
+  view     OpenGL draws otherwise on every graphics card: pictures need only look alike
+"""
+
+import base64
+from importlib.metadata import version
+from pathlib import Path
+
+from inetlib import same, view
+
+ROOT = Path(__file__).resolve().parent.parent
+PINNED = (  # another matplotlib than that of constraints.txt draws otherwise
+    f"\nmatplotlib=={version('matplotlib')}\n" in (ROOT / "constraints.txt").read_text("utf-8")
+)
+ALIKE = 255, 0.005  # levels and mean for pictures by OpenGL
+
+
+def tags(cell):
+    """The tags of a cell, none for most."""
+    return cell.metadata.get("tags", [])
+
+
+def kept(stored, fresh, looks=(same.LEVELS, same.MEAN)):
+    """Whether the outputs of the stored cell can stay, in the light of a fresh run of it.
+
+    looks: levels and mean, see `same.picture`.
+    """
+    if "timing" in tags(fresh) and stored.outputs:
+        return True
+    if "view" in tags(fresh) and stored.outputs and not view.available()[0]:
+        return True  # what this machine cannot draw
+    old, new = shown(stored), shown(fresh)
+    looks = ALIKE if "view" in tags(fresh) else looks
+    return len(old) == len(new) and all(_same(a, b, looks) for a, b in zip(old, new, strict=True))
+
+
+def shown(cell):
+    """What a cell shows: (kind, content) pairs, streams in one piece, no warnings of OpenGL."""
+    found = []
+    for output in cell.outputs:
+        if output.output_type == "stream":
+            if "view" in tags(cell) and output.name == "stderr":
+                continue
+            if found and found[-1][0] == output.name:  # one print may be stored in several pieces
+                found[-1] = output.name, found[-1][1] + output.text
+            else:
+                found.append((output.name, output.text))
+        elif output.output_type == "error":
+            found.append(("error", "\n".join(output.traceback)))
+        else:
+            found += sorted(output.data.items())
+    return found
+
+
+def _same(old, new, looks):
+    (kind, one), (other, two) = old, new
+    if kind != other:
+        return False
+    if kind == "image/png":
+        return same.picture(*(base64.b64decode(x) for x in (one, two)), *looks)
+    return same.text(one, two) if isinstance(one, str) and isinstance(two, str) else one == two
