@@ -51,19 +51,46 @@ def lacking(name):
     return ""
 
 
-def in_setting(name, command, folder):
-    """Run a command of this Python in a setting; fails with what it said."""
+@pytest.fixture(scope="module")
+def somebody(tmp_path_factory):
+    """The environment of a user with a set-up of his own, which must change nothing."""
+    home = tmp_path_factory.mktemp("a home")
+    (home / "matplotlibrc").write_text(
+        "backend: svg\nfont.size: 17\nlines.linewidth: 4\naxes.facecolor: red\n"
+        "savefig.bbox: tight\nfigure.dpi: 50\nsvg.fonttype: none\npath.simplify: True\n"
+        "axes.formatter.use_locale: True\nmathtext.fontset: stix\nimage.cmap: jet\n"
+    )
+    start = home / "ipython" / "profile_default" / "startup"
+    start.mkdir(parents=True)
+    (start / "mine.py").write_text(
+        "print('hello'); import matplotlib as m; m.rcParams['font.size']=30"
+    )
+    names = "HOME", "USERPROFILE", "MPLCONFIGDIR", "MATPLOTLIBRC", "IPYTHONDIR"
+    places = home, home, home, home / "matplotlibrc", home / "ipython"
+    other = {
+        "MPLBACKEND": "svg",
+        "LC_ALL": "de_DE.UTF-8",
+        "TZ": "Asia/Tokyo",
+        "PYTHONHASHSEED": "7",
+    }
+    return other | {name: str(place) for name, place in zip(names, places, strict=True)}
+
+
+def in_setting(name, command, folder, more):
+    """Run a command of this Python in a setting, and more of an environment; what it said.
+
+    It fails with that.
+    """
     if reason := lacking(name):
         pytest.skip(reason)
     done = subprocess.run(
         [sys.executable, *map(str, command)],
-        env=os.environ | SETTINGS[name] | {"PYTHONPATH": str(folder), "PYTHONWARNINGS": "default"},
+        env=os.environ | SETTINGS[name] | more | {"PYTHONPATH": str(folder)},
         cwd=folder,
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
-    return done
 
 
 @pytest.fixture(scope="module")
@@ -78,10 +105,10 @@ def at_most(one, two):
     return one.shape == two.shape and np.abs(one - two).max() <= 1e-9 * np.ptp(one)
 
 
-def check(name, here, tmp_path):
+def check(name, here, tmp_path, more):
     figures = tmp_path / "figures"
     shutil.copytree(ROOT / "figures", figures)
-    in_setting(name, [HERE / "elsewhere.py", figures], ROOT)
+    in_setting(name, [HERE / "elsewhere.py", figures], ROOT, more)
     kernels, rewritten = json.loads((figures / "rewritten.json").read_text())
     wanted = SETTINGS[name].get("OPENBLAS_CORETYPE")
     assert wanted is None or kernels == [wanted]
@@ -95,20 +122,20 @@ def check(name, here, tmp_path):
 
 @pytest.mark.elsewhere
 @pytest.mark.parametrize("name", SHORT)
-def test_another_processor_gives_the_same(name, here, tmp_path):
-    check(name, here, tmp_path)
+def test_another_processor_gives_the_same(name, here, tmp_path, somebody):
+    check(name, here, tmp_path, somebody if name == "all of them" else {})
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHORT])
-def test_every_other_processor_gives_the_same(name, here, tmp_path):
-    check(name, here, tmp_path)
+def test_every_other_processor_gives_the_same(name, here, tmp_path, somebody):
+    check(name, here, tmp_path, somebody if name == "all of them" else {})
 
 
 def rewritten(noise, tmp_path):
     figures = tmp_path / "figures"
     shutil.copytree(ROOT / "figures", figures)
-    in_setting("default", [HERE / "elsewhere.py", figures, noise], ROOT)
+    in_setting("default", [HERE / "elsewhere.py", figures, noise], ROOT, {})
     return json.loads((figures / "rewritten.json").read_text())[1]
 
 
@@ -145,7 +172,7 @@ def test_one_parameter_rewrites_one_figure(tmp_path):
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["default", "all of them"])
-def test_all_notebooks_twice_in_another_folder_change_no_file(name, tmp_path):
+def test_all_notebooks_twice_in_another_folder_change_no_file(name, tmp_path, somebody):
     folder = tmp_path / "another folder"
     for part in ("notebooks", "figures", "inetlib", "tools"):
         skipped = shutil.ignore_patterns("__pycache__", ".ipynb_checkpoints", ".new-*")
@@ -154,7 +181,7 @@ def test_all_notebooks_twice_in_another_folder_change_no_file(name, tmp_path):
     kept = [p for part in ("notebooks", "figures") for p in (folder / part).rglob("*")]
     before = {path: path.read_bytes() for path in kept if path.is_file()}
     for _ in range(2):
-        in_setting(name, ["tools/redraw.py"], folder)
+        in_setting(name, ["tools/redraw.py"], folder, somebody if name == "all of them" else {})
         after = {path: path.read_bytes() for path in before}
         assert [path.name for path in before if before[path] != after[path]] == []
     assert not list(folder.rglob(".new-*"))

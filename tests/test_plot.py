@@ -49,6 +49,18 @@ def test_the_style_makes_svg_ids_and_glyphs_the_same_on_every_machine():
         assert plt.rcParams["svg.fonttype"] == "path"
 
 
+def test_the_style_starts_from_the_defaults_of_matplotlib():
+    with plt.rc_context():
+        plt.rcdefaults()
+        plot.use_style()
+        wanted = dict(plt.rcParams)
+        mine = {"font.size": 20, "lines.linewidth": 4, "figure.dpi": 50, "savefig.bbox": "tight"}
+        plt.rcParams.update(mine | {"axes.prop_cycle": plt.cycler(color="rgb")})
+        plot.use_style()
+        differ = {name for name, value in plt.rcParams.items() if value != wanted[name]}
+        assert differ == set()
+
+
 def test_canvas_has_the_panels_asked_for_without_frames_and_with_equal_aspect():
     figure, axes = plot.canvas([["A", "B"], ["C", "C"]], 6, 4, ratios=[1, 2])
     assert set(axes) == {"A", "B", "C"}
@@ -282,6 +294,31 @@ def test_a_scene_seen_from_below_paints_the_other_way_round(ax):
     below = plot.camera(0, -np.pi / 2)
     drawn = plot.scene(ax, below, *stacked([0, 1, 2]), fill=[RED, GREEN, BLUE])
     np.testing.assert_array_equal(drawn.get_facecolors(), [BLUE, GREEN, RED])
+
+
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=30), st.integers(0, 99))
+def test_ties_are_painted_in_their_order_whatever_the_last_digits_are(levels, seed):
+    keys = np.array(levels) / 3
+    noisy = keys * (1 + 1e-13 * np.random.default_rng(seed).uniform(-1, 1, keys.shape))
+    wanted = [k for _, k in sorted(zip(levels, range(len(levels)), strict=True))]
+    assert plot.order(keys).tolist() == plot.order(noisy).tolist() == wanted
+
+
+@given(st.lists(st.floats(-1, 1), min_size=1, max_size=30))
+def test_the_order_is_that_of_the_keys_up_to_ties(keys):
+    keys = np.array(keys)
+    painted = plot.order(keys)
+    assert sorted(painted.tolist()) == list(range(len(keys)))
+    assert np.diff(keys[painted], prepend=keys.min()).min() >= -len(keys) * 3e-9
+
+
+def test_a_tie_in_a_scene_does_not_hang_on_the_last_bit(ax):
+    heights = np.array([0.3, 0.1 + 0.2, 1.0])  # 0.3 and the number after it
+    assert heights[0] < heights[1]
+    colours = [RED, GREEN, BLUE]
+    for other in (heights, heights[[1, 0, 2]]):
+        drawn = plot.scene(ax, ABOVE, *stacked(other), fill=colours)
+        np.testing.assert_array_equal(drawn.get_facecolors(), colours)
 
 
 def test_a_line_on_a_face_is_painted_over_it_and_under_the_next_one(ax):

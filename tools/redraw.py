@@ -3,12 +3,14 @@
     python tools/redraw.py              all notebooks
     python tools/redraw.py 3_1 4        those whose names start so
 
-A notebook is stored only when it ran to its end and something changed; seconds that cells
-tagged `timing` print stay those of the first run, or every run would change it.  The table at
-the end shows, for each figure, the largest deviation of theta and theta0 over all its faces.
+A notebook is stored only when it ran to its end and shows something else than before; what
+differs by the last digits of this machine is kept (see outputs.py), and so are figures (see
+`inetlib.publish`).  The table at the end shows, for each figure, the largest deviation of theta
+and theta0 over all its faces, and whether it was kept.
 """
 
 import argparse
+import copy
 import os
 import sys
 import tempfile
@@ -16,11 +18,12 @@ import time
 from pathlib import Path
 
 import nbformat
+import outputs
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, DeadKernelError
 from tqdm import tqdm
 
-from inetlib import publish, view
+from inetlib import publish
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -41,7 +44,7 @@ def main(arguments=None):
             print(f"redraw: {path} is not a notebook: restore it with git", file=sys.stderr)
             return 2
     total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
-    seconds = {}
+    seconds, before = {}, stamps()
     with tqdm(total=total, unit="cell") as bar:
         for path, notebook in notebooks.items():
             bar.set_description(path.stem)
@@ -54,7 +57,7 @@ def main(arguments=None):
                 )
                 return 1
             store(notebook, path)
-    print(table(seconds))
+    print(table(seconds, before))
     return 0
 
 
@@ -67,14 +70,13 @@ def chosen(names):
 def run(notebook, folder, bar):
     """Execute in place; return the seconds of each cell that carries a figure's tag."""
     seconds, started = {}, {}
-    cells = enumerate(notebook.cells)
-    stored = {k: cell.outputs for k, cell in cells if {"view", "timing"} & set(tags(cell))}
+    stored = copy.deepcopy(notebook.cells)
 
     def start(cell, cell_index):
         started[cell_index] = time.perf_counter()
 
     def done(cell, cell_index, execute_reply):
-        for tag in tags(cell):
+        for tag in outputs.tags(cell):
             if tag.startswith(("fig", "table", "beyond")):
                 seconds[tag] = time.perf_counter() - started[cell_index]
         bar.update()
@@ -90,24 +92,18 @@ def run(notebook, folder, bar):
         on_cell_execute=start,
         on_cell_executed=done,
     ).execute()
-    for k, outputs in stored.items():
-        keep_or_renew(notebook.cells[k], outputs)
+    for cell, old in zip(notebook.cells, stored, strict=True):
+        if cell.cell_type == "code":
+            keep(cell, old)
     return seconds
 
 
-def keep_or_renew(cell, stored):
-    """Keep stored seconds, and pictures that this machine cannot draw; drop GL's warnings."""
-    if "timing" in tags(cell):
-        cell.outputs = stored or cell.outputs
-    elif view.available()[0]:
+def keep(cell, stored):
+    """Keep what is stored below the cell where the fresh outputs show the same."""
+    if outputs.kept(stored, cell):
+        cell.outputs = stored.outputs
+    elif "view" in outputs.tags(cell):  # without OpenGL's warnings
         cell.outputs = [o for o in cell.outputs if o.get("name") != "stderr"]
-    else:
-        cell.outputs = stored
-
-
-def tags(cell):
-    """The tags of a cell, none for most."""
-    return cell.metadata.get("tags", [])
 
 
 def store(notebook, path):
@@ -126,15 +122,23 @@ def store(notebook, path):
     os.replace(temporary, path)
 
 
-def table(seconds):
-    """One line a figure that was drawn: deviations in degrees, seconds."""
-    rows = [f"{'figure':16} {'max |dtheta| deg':>18} {'max |dtheta0| deg':>18} {'seconds':>9}"]
+def stamps():
+    """When each figure was last written: {name: time}."""
+    return {path.stem: path.stat().st_mtime_ns for path in (ROOT / "figures").glob("*.svg")}
+
+
+def table(seconds, before):
+    """One line a figure that was drawn: deviations in degrees, seconds, whether it was kept."""
+    head = f"{'figure':16} {'max |dtheta| deg':>18} {'max |dtheta0| deg':>18} {'seconds':>9}"
+    rows, after = [head], stamps()
     for name, entry in publish.read_manifest(ROOT / "figures").items():
         if name in seconds:
             off = [entry["max_deviation_theta_deg"], entry["max_deviation_theta0_deg"]]
             cells = ["-" if x is None else f"{x:.9f}" for x in off]
-            rows.append(f"{name:16} {cells[0]:>18} {cells[1]:>18} {seconds[name]:9.2f}")
+            fate = "kept" if before.get(name) == after[name] else "written"
+            rows.append(f"{name:16} {cells[0]:>18} {cells[1]:>18} {seconds[name]:9.2f}  {fate}")
     rows.append("over all faces that claim the angles; nets sampled from curves: see manifest.json")
+    rows.append("kept: on file is the same figure, but for rounding")
     return "\n".join(rows)
 
 
