@@ -1,5 +1,6 @@
 """The project's own promises: declared packages, pins, style, nothing private in a file."""
 
+import functools
 import importlib
 import inspect
 import re
@@ -35,7 +36,12 @@ def declared():
     return [Requirement(r) for r in project["dependencies"] + [r for e in extras for r in e]]
 
 
+@functools.cache
 def public_functions():
+    return list(_public_functions())
+
+
+def _public_functions():
     for name in MODULES:
         module = importlib.import_module(f"inetlib.{name}")
         for key, value in vars(module).items():
@@ -97,7 +103,7 @@ def test_identifiers_are_ascii():
 
 
 def test_every_public_name_has_a_docstring_that_names_its_source():
-    names = list(public_functions())
+    names = public_functions()
     assert len(names) > 40
     for name, value in names:
         doc = inspect.getdoc(value)
