@@ -26,6 +26,8 @@ BENDS = 60  # steps towards it, at most
 STRAIGHT = 1e-4  # a change of the map, of its size, that ends them
 SAMPLES = 20000  # triangles that are looked at for overlaps
 OVERLAP = 1e-3  # the part of them that may
+TIE = 1e-9  # lengths as close as this, relatively, are equal: else the last bit would choose
+ROUND = 1e-3  # a surface without a longest direction: its moment, of its size, is less
 
 
 class Flat(NamedTuple):
@@ -60,16 +62,18 @@ def flatten(V, F, loops, boundary="even"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
     if len(loops) == 1:
         faces, origin, period = F, np.arange(len(V)), None
-        z, energy = _lscm(V, F, loops[0])
+        ends = _ends(V, loops[0])
+        z, energy = _lscm(V, F, ends)
         z = _disk(z, energy, loops[0])
     else:
         faces, origin, bank = _cut(F, _path(V, F, loops))
-        energy = _lscm(V[origin], faces, np.flatnonzero(bank))[1]  # any pins: no map is wanted
+        ends = np.flatnonzero(bank)[:2]  # any pins: no map is wanted
+        energy = _lscm(V[origin], faces, ends)[1]
         z, period = _ring(energy, loops, origin, bank, len(V)), 1.0 + 0j
-    flat = _judged(V, F, z, faces, origin, period)
+    flat = _judged(V, F, z, faces, origin, period, ends)
     if boundary == "even":
         z = _even(V, loops, flat, energy)
-        even = _judged(V, F, z, faces, origin, flat.period)
+        even = _judged(V, F, z, faces, origin, flat.period, ends)
         if even.flips <= flat.flips and _overlap(even) < OVERLAP:
             return even
     if (part := _overlap(flat)) > OVERLAP:
@@ -89,28 +93,48 @@ def _disk(z, energy, loop):
         load = np.zeros(count, dtype=complex)
         load[loop] = z[loop]
         x = inverse(np.concatenate([load.real, load.imag]))
-        before, z = z, _unit_rim(x[:count] + 1j * x[count:], loop)
+        x = x[:count] + 1j * x[count:]
+        x *= np.exp(1j * np.angle(np.vdot(x[loop], z[loop])))  # on flat disks rounding turns it
+        before, z = z, _unit_rim(x, loop)
         if np.abs(z - before).max() < STILL * np.abs(z).max():
             break
     return z
 
 
-def _twice_axis(z, F):
-    """Twice the angle of the longest direction of the flat triangles, 0 where there is none."""
+def _axis(z, F, ends):
+    """The angle of the longest direction of the flat triangles, from the first end to the second.
+
+    Where no direction is much longer than others, as on a square, it is the one of the ends.
+    """
     a, b, c = z[F].T
     area = np.imag(np.conj(b - a) * (c - a))
     a, b, c = z[F].T - np.average((a + b + c) / 3, weights=area)
     moment = np.average(a * a + b * b + c * c + a * b + b * c + c * a, weights=area)
     size = np.average(np.abs(a) ** 2, weights=area)
-    return np.angle(moment) if abs(moment) > 1e-6 * size else 0.0
+    way = z[ends[1]] - z[ends[0]]
+    if abs(moment) <= ROUND * size:
+        return np.angle(way)
+    axis = np.sqrt(moment)
+    return np.angle(axis if np.real(np.conj(axis) * way) >= 0 else -axis)
 
 
-def _lscm(V, F, loop):
-    """(z, energy): libigl's least squares conformal map and the matrix of its energy."""
-    first = loop[np.argmax(np.linalg.norm(V[loop] - V[loop].mean(axis=0), axis=1))]
-    second = loop[np.argmax(np.linalg.norm(V[loop] - V[first], axis=1))]
-    ends = np.array([[0.0, 0.0], [1.0, 0.0]])
-    uv, energy = igl.lscm(V, F, np.array([first, second]), ends)
+def _ends(V, loop):
+    """Two vertices of the loop far from each other, the first ones of those that are farthest."""
+    first = _farthest(V, loop, V[loop].mean(axis=0))
+    return first, _farthest(V, loop, V[first])
+
+
+def _farthest(V, loop, point):
+    away = np.linalg.norm(V[loop] - point, axis=1)
+    return loop[np.argmax(away >= (1 - TIE) * away.max())]
+
+
+def _lscm(V, F, ends):
+    """(z, energy): libigl's least squares conformal map and the matrix of its energy.
+
+    ends: two vertices; they are pinned to 0 and 1.
+    """
+    uv, energy = igl.lscm(V, F, np.array(ends), np.array([[0.0, 0.0], [1.0, 0.0]]))
     return uv[:, 0] + 1j * uv[:, 1], csr_array(energy)
 
 
@@ -199,7 +223,8 @@ def _even(V, loops, flat, energy):
     merge = csr_array((np.ones(2 * k), (np.arange(2 * k), np.r_[flat.origin, flat.origin + count])))
     bend = difference.T @ diags_array(weight) @ difference
     A = merge.T @ energy @ merge + block_diag([bend, bend])
-    solve = linear.factor((A + 1e-10 * A.diagonal().mean() * eye_array(2 * count)).tocsr())
+    hold = 1e-10 * A.diagonal().mean()  # near the last map, wherever the cut is
+    solve = linear.factor((A + hold * eye_array(2 * count)).tocsr())
     still = merge.T @ (energy @ np.concatenate([banks.real, banks.imag]))
     for _ in range(BENDS):
         edge = difference @ z + jump
@@ -207,9 +232,10 @@ def _even(V, loops, flat, energy):
         if flat.period is None:
             scale[:] = 1  # nothing else fixes the size of a disk
         target = scale[loop] * length * edge / np.maximum(np.abs(edge), 1e-300)
-        force = difference.T @ (weight * (target - jump))
+        force = difference.T @ (weight * (target - jump)) + hold * z
         x = solve(np.concatenate([force.real, force.imag]) - still)
         before, z = z, x[:count] + 1j * x[count:]
+        z -= z.mean() if flat.period is None else z[0].real + 1j * z.imag.mean()
         if np.abs(z - before - (z - before).mean()).max() < STRAIGHT * np.ptp(z.real):
             break
     return z[flat.origin] + banks
@@ -229,10 +255,10 @@ def _rims(flat, loops, count):
 # --- judging --------------------------------------------------------------------------------
 
 
-def _judged(V, F, z, faces, origin, period):
+def _judged(V, F, z, faces, origin, period, ends):
     """The `Flat` of a map, scaled to the area of the surface, a disk turned to its long axis."""
     if period is None:
-        z = z * np.exp(-0.5j * _twice_axis(z, faces))
+        z = z * np.exp(-1j * _axis(z, faces, ends))
     flips, distortion, scale, area = _judge(V, F, z[faces])
     grow = np.sqrt(area.sum() / np.sum(area * scale**2))
     period = None if period is None else period * grow

@@ -40,6 +40,7 @@ def results():
     for name, surface, wanted in (
         ("shell", examples.hanging_shell(16), SHELL),
         ("square", square, SQUARE),
+        ("ring", examples.saddle_with_hole(8), SQUARE),
     ):
         net = design.cover(*surface, **wanted)
         found |= {f"cover of {name}": net.V, f"quads of {name}": net.Q}

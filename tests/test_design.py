@@ -345,6 +345,47 @@ def test_points_of_the_plane_are_lifted_linearly():
     np.testing.assert_allclose(lifted[:-1], V, atol=1e-9)
 
 
+def square(n=12):
+    return mesh.triangles(*sheet(n, n, lambda u, v: (2 * u, 2 * v, 0 * u)))
+
+
+def hexagon(rings=6):
+    V, Q, polygon = mesh.polygon_rings(6, rings)
+    V = np.concatenate([V, [[0, 0, 0]]])
+    fan = np.stack([polygon, np.roll(polygon, -1), np.full(6, len(V) - 1)], axis=1)
+    return V, np.concatenate([mesh.triangles(V, Q)[1], fan])
+
+
+SYMMETRIC = {
+    "square": square,
+    "hexagon": hexagon,
+    "shell": lambda: examples.hanging_shell(16),
+    "ring": lambda: examples.saddle_with_hole(8),
+}
+
+
+@pytest.mark.parametrize("pair", [(60, 60), (90, 90), (75, 50)])
+@pytest.mark.parametrize("name", SYMMETRIC)
+def test_the_last_digits_of_a_symmetric_surface_do_not_turn_its_net(name, pair):
+    V, F = SYMMETRIC[name]()
+    net = cover((V, F), pair, count=200)
+    for seed in range(2):
+        noise = 1 + 1e-13 * np.random.default_rng(seed).uniform(-1, 1, V.shape)
+        other = cover((V * noise, F), pair, count=200)
+        np.testing.assert_array_equal(other.Q, net.Q)
+        np.testing.assert_allclose(other.V, net.V, atol=1e-6 * np.ptp(V))
+
+
+def test_a_square_has_no_longest_direction_and_takes_that_of_two_corners():
+    V, F = square()
+    flat = flatten.flatten(*clean.clean(V, F)[:3], "plain")
+    corners = flat.z[[0, 168]]  # the first corner, and the one that is farthest from it
+    assert np.angle(corners[1] - corners[0]) == pytest.approx(0, abs=1e-9)
+    V, F = mesh.triangles(*sheet(12, 12, lambda u, v: (2 * u, 2.05 * v, 0 * u)))
+    flat = flatten.flatten(*clean.clean(V, F)[:3], "plain")
+    assert flat.z[12] - flat.z[0] == pytest.approx(2.05, abs=1e-9)  # along the longer side
+
+
 # --- repairs --------------------------------------------------------------------------------
 
 

@@ -98,11 +98,11 @@ def here():
     return elsewhere.results()
 
 
-def at_most(one, two):
-    """Whether all numbers agree to 1e-9 of the size, whole numbers exactly."""
+def agree(one, two):
+    """Whether all numbers agree to 1e-6 of the size, whole numbers exactly."""
     if one.dtype.kind in "iu":
         return np.array_equal(one, two)
-    return one.shape == two.shape and np.abs(one - two).max() <= 1e-9 * np.ptp(one)
+    return one.shape == two.shape and np.abs(one - two).max() <= 1e-6 * np.ptp(one)
 
 
 def check(name, here, tmp_path, more):
@@ -114,7 +114,7 @@ def check(name, here, tmp_path, more):
     assert wanted is None or kernels == [wanted]
     with np.load(figures / "results.npz") as there:
         assert set(there.files) == set(here)
-        assert [key for key in here if not at_most(here[key], there[key])] == []
+        assert [key for key in here if not agree(here[key], there[key])] == []
     if not outputs.PINNED:
         rewritten = {k: x for k, x in rewritten.items() if not set(x) <= {"svg", "png"}}
     assert rewritten == {}

@@ -730,6 +730,18 @@ def test_quads_are_cut_along_their_shorter_diagonal_and_keep_their_orientation()
         assert sorted(signed_area(V[[first, second]])) == pytest.approx([0.5, 2.5])
 
 
+def test_equal_diagonals_are_cut_along_v1_v3_whatever_their_last_digits_are():
+    V, Q, _ = mesh.polygon_rings(6, 8)
+    d1, d2 = (np.linalg.norm(V[Q[:, k + 2]] - V[Q[:, k]], axis=1) for k in (0, 1))
+    ties = np.isclose(d1, d2, rtol=1e-12)
+    assert ties.sum() == 48  # the quads on the axes of the hexagon
+    wanted = mesh.triangles(V, Q)[1]
+    np.testing.assert_array_equal(wanted[::2][ties], Q[ties][:, :3])
+    for seed in range(5):
+        noise = 1 + 1e-13 * np.random.default_rng(seed).uniform(-1, 1, V.shape)
+        np.testing.assert_array_equal(mesh.triangles(V * noise, Q)[1], wanted)
+
+
 def test_triangles_of_many_quads_come_in_pairs_and_cover_them():
     V, Q = bumpy(5, 4) * [1, 1, 0], slow_grid(5, 4)
     W, T = mesh.triangles(V, Q)
