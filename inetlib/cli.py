@@ -8,7 +8,7 @@ Paper: Sec. 6 (command line; beyond the paper).
 
 import contextlib
 import functools
-import importlib.util
+import importlib
 import json
 import os
 import sys
@@ -224,9 +224,8 @@ def _figures(given):
     if not (runner.is_file() and folder.is_dir()):
         raise ValueError("figures: the notebooks are not here, run this in a clone of the project")
     names = [stem for name in given.names for stem in _notebooks(folder, name)]
-    spec = importlib.util.spec_from_file_location("redraw", runner)
-    redraw = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(redraw)
+    sys.path.insert(0, str(runner.parent))
+    redraw = importlib.import_module("redraw")
     if not _progress(given):
         redraw.tqdm = functools.partial(redraw.tqdm, disable=True)
     with contextlib.redirect_stdout(None if given.quiet else sys.stdout):

@@ -11,7 +11,6 @@ import hashlib
 import io
 import json
 import os
-import tempfile
 import zipfile
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +19,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import PIL.Image
 
-from . import measure, same
+from . import files, measure, same
 
 DIGITS = 7  # decimals of the data that are stored
 
@@ -79,26 +78,25 @@ def save(drawing, folder):
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
     manifest = read_manifest(folder)
-    with tempfile.TemporaryDirectory(dir=folder, prefix=".new-") as fresh:
-        fresh = Path(fresh)
+    with files.scratch(folder) as fresh:
         entry = _draw(drawing, fresh)
         if not differences(drawing.name, fresh, folder):
             return manifest[drawing.name]
         text = json.dumps(dict(sorted((manifest | {drawing.name: entry}).items())), indent=2)
         (fresh / "manifest.json").write_text(text + "\n", encoding="utf-8", newline="\n")
         (folder / "data").mkdir(exist_ok=True)
-        for name in (*_files(drawing.name), "manifest.json"):  # the last vouches for the others
+        for name in (*_names(drawing.name), "manifest.json"):  # the last vouches for the others
             os.replace(fresh / name, folder / name)
     return entry
 
 
-def _files(name):
+def _names(name):
     return f"{name}.svg", f"{name}.png", f"data/{name}.npz"
 
 
 def _draw(drawing, folder):
     """Write the three files of a drawing and a manifest of it alone; its entry."""
-    svg, png, data = (folder / name for name in _files(drawing.name))
+    svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
     figure = drawing.figure
     text = io.StringIO()
@@ -153,7 +151,7 @@ def differences(name, one, two):
     Paper: Figs. 1-13 (files).
     """
     one, two = Path(one), Path(two)
-    pairs = [(one / file, two / file) for file in _files(name)]
+    pairs = [(one / file, two / file) for file in _names(name)]
     entries = [read_manifest(folder).get(name) for folder in (one, two)]
     if None in entries or not all(path.exists() for pair in pairs for path in pair):
         return ["missing"]
@@ -195,8 +193,8 @@ def save_text(text, path):
     path = Path(path)
     if path.exists() and same.text(path.read_text(encoding="utf-8"), text):
         return
-    with _replacing(path) as name:
-        Path(name).write_text(text, encoding="utf-8", newline="\n")
+    with files.replacing(path) as name:
+        name.write_text(text, encoding="utf-8", newline="\n")
 
 
 def preview(drawing, colours=96):
@@ -230,22 +228,3 @@ def read_manifest(folder):
         raise ValueError(
             f"{path} is not a JSON object: delete it and make the figures again"
         ) from error
-
-
-class _replacing:
-    """A temporary name beside `path`, renamed onto it when the block ends well."""
-
-    def __init__(self, path):
-        self.path = path
-
-    def __enter__(self):
-        handle, self.temporary = tempfile.mkstemp(dir=self.path.parent, prefix=".new-")
-        os.close(handle)
-        return self.temporary
-
-    def __exit__(self, kind, error, trace):
-        if kind is None:
-            os.chmod(self.temporary, 0o644)
-            os.replace(self.temporary, self.path)
-        else:
-            os.unlink(self.temporary)

@@ -7,6 +7,7 @@ Text may differ by one unit of the last digit it shows, pictures by a little ant
 """
 
 import base64
+import os
 from importlib.metadata import version
 from pathlib import Path
 
@@ -17,6 +18,17 @@ PINNED = (  # another matplotlib than that of constraints.txt draws otherwise
     f"\nmatplotlib=={version('matplotlib')}\n" in (ROOT / "constraints.txt").read_text("utf-8")
 )
 ALIKE = 255, 0.005  # levels and mean for pictures by OpenGL
+
+
+def environment(folder):
+    """The environment of a kernel, free of what the user has set up for himself.
+
+    folder: an empty one, for IPython and matplotlib to find nothing in.
+    """
+    (folder / "matplotlibrc").touch()
+    mine = {"MPLBACKEND": "module://matplotlib_inline.backend_inline", "IPYTHONDIR": str(folder)}
+    mine |= {"MATPLOTLIBRC": str(folder / "matplotlibrc"), "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
+    return {k: x for k, x in os.environ.items() if k != "PYTHONSTARTUP"} | mine
 
 
 def tags(cell):

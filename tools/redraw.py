@@ -9,10 +9,19 @@ differs by the last digits of this machine is kept (see outputs.py), and so are 
 and theta0 over all its faces, and whether it was kept.
 """
 
+import contextlib
+import os
+import signal
+import subprocess
+import sys
+
+from inetlib import start
+
+if __name__ == "__main__":  # before anything large is loaded
+    start.watch("redraw", "; a notebook that had not ended is as it was")
+
 import argparse
 import copy
-import os
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -23,9 +32,10 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, DeadKernelError
 from tqdm import tqdm
 
-from inetlib import publish
+from inetlib import files, publish
 
 ROOT = Path(__file__).resolve().parent.parent
+RUNNING = []  # the client whose kernel must not outlive this process
 
 
 def main(arguments=None):
@@ -44,6 +54,8 @@ def main(arguments=None):
             print(f"redraw: {path} is not a notebook: restore it with git", file=sys.stderr)
             return 2
     total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
+    start.at_stop(end_kernel)
+    sweep()
     seconds, before = {}, stamps()
     with tqdm(total=total, unit="cell") as bar:
         for path, notebook in notebooks.items():
@@ -72,7 +84,7 @@ def run(notebook, folder, bar):
     seconds, started = {}, {}
     stored = copy.deepcopy(notebook.cells)
 
-    def start(cell, cell_index):
+    def begin(cell, cell_index):
         started[cell_index] = time.perf_counter()
 
     def done(cell, cell_index, execute_reply):
@@ -81,7 +93,7 @@ def run(notebook, folder, bar):
                 seconds[tag] = time.perf_counter() - started[cell_index]
         bar.update()
 
-    NotebookClient(
+    client = NotebookClient(
         notebook,
         timeout=600,
         kernel_name="python3",
@@ -89,13 +101,43 @@ def run(notebook, folder, bar):
         coalesce_streams=True,  # else prints may be split in two, or not, from run to run
         extra_arguments=["--log-level=40"],
         resources={"metadata": {"path": str(folder)}},
-        on_cell_execute=start,
+        on_cell_execute=begin,
         on_cell_executed=done,
-    ).execute()
+    )
+    RUNNING[:] = [client]
+    with files.scratch(tempfile.gettempdir()) as empty:
+        client.execute(env=outputs.environment(empty))
+    RUNNING.clear()
     for cell, old in zip(notebook.cells, stored, strict=True):
         if cell.cell_type == "code":
             keep(cell, old)
     return seconds
+
+
+def end_kernel():
+    """Kill the kernel that runs, and what it has started: it leads a session of its own.
+
+    One that is just being started ends by itself, within a second of this process.
+    """
+    for client in RUNNING:
+        process = getattr(getattr(client.km, "provisioner", None), "process", None)
+        with contextlib.suppress(OSError):
+            if process is not None and os.name == "posix":
+                os.killpg(process.pid, signal.SIGKILL)
+            elif process is not None:
+                process.kill()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            if process is not None:
+                process.wait(2)
+        if client.km is not None:
+            client.km.cleanup_connection_file()
+    sweep()
+
+
+def sweep():
+    """Remove what killed processes have left."""
+    for folder in ("notebooks", "figures"):
+        files.sweep(ROOT / folder)
 
 
 def keep(cell, stored):
@@ -115,11 +157,8 @@ def store(notebook, path):
     text = nbformat.writes(notebook) + "\n"
     if text == path.read_text(encoding="utf-8"):
         return
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".new-")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.chmod(temporary, 0o644)
-    os.replace(temporary, path)
+    with files.replacing(path) as name:
+        name.write_text(text, encoding="utf-8", newline="\n")
 
 
 def stamps():
@@ -143,4 +182,6 @@ def table(seconds, before):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done, Python only cleans up
+    sys.exit(code)
