@@ -37,13 +37,14 @@ def watch(program, words=""):
 
     def stop(number, frame):
         signal.signal(number, signal.SIG_IGN)
-        for end in _last:
-            end()
         files = sys.modules.get("inetlib.files")
         wrote = files is not None and files.discard()
         bars = getattr(sys.modules.get("tqdm"), "tqdm", None)
         line = "\n" if getattr(bars, "_instances", ()) else ""  # below a progress bar
         os.write(2, f"{line}{program}: stopped{'' if wrote else words}\n".encode())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what else ends now need not say so
+        for end in _last:
+            end()
         os._exit(STOPPED)
 
     signal.signal(signal.SIGINT, stop)

@@ -24,6 +24,7 @@ import argparse
 import copy
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor, wait
 from pathlib import Path
 
 import nbformat
@@ -87,7 +88,7 @@ def run(notebook, folder, bar):
     def begin(cell, cell_index):
         started[cell_index] = time.perf_counter()
 
-    def done(cell, cell_index, execute_reply):
+    def end(cell, cell_index, execute_reply):
         for tag in outputs.tags(cell):
             if tag.startswith(("fig", "table", "beyond")):
                 seconds[tag] = time.perf_counter() - started[cell_index]
@@ -102,11 +103,15 @@ def run(notebook, folder, bar):
         extra_arguments=["--log-level=40"],
         resources={"metadata": {"path": str(folder)}},
         on_cell_execute=begin,
-        on_cell_executed=done,
+        on_cell_executed=end,
     )
     RUNNING[:] = [client]
-    with files.scratch(tempfile.gettempdir()) as empty:
-        client.execute(env=outputs.environment(empty))
+    with files.scratch(tempfile.gettempdir()) as empty, ThreadPoolExecutor(1) as worker:
+        # nbclient takes over Ctrl-C in the main thread, and loses it: so it works in another
+        done = worker.submit(client.execute, env=outputs.environment(empty))
+        while not done.done():
+            wait([done], timeout=1)  # on Windows Ctrl-C waits for this
+    done.result()
     RUNNING.clear()
     for cell, old in zip(notebook.cells, stored, strict=True):
         if cell.cell_type == "code":
