@@ -1,13 +1,16 @@
-# Every target sets up what it needs: .venv with the pinned packages of constraints.txt.
+# Every target sets up what it needs: .venv with the pinned packages of constraints.txt,
+# or, to test the declared ranges, .venv-oldest and .venv-newest, each time from nothing.
 PYTHON ?= python3
 ifeq ($(OS),Windows_NT)
-BIN := .venv/Scripts
+SCRIPTS := Scripts
 else
-BIN := .venv/bin
+SCRIPTS := bin
 endif
+BIN := .venv/$(SCRIPTS)
 READY := .venv/ready
 
-.PHONY: help figures test test-fast test-long test-browser notebooks explore bench lint clean
+.PHONY: help figures test test-fast test-long test-browser test-oldest test-newest \
+	notebooks explore bench lint clean
 
 help:
 	@echo "make figures    run every notebook and redraw figures/"
@@ -15,11 +18,13 @@ help:
 	@echo "make test-fast  the tests without the notebooks and without a browser"
 	@echo "make test-long  what another processor would draw, all settings, some 20 minutes"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
+	@echo "make test-oldest  all tests with every declared package at its lower bound"
+	@echo "make test-newest  all tests with the newest packages, whatever they are today"
 	@echo "make explore    turn the angles of nets in your browser (FILE=surface.obj for your own)"
 	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
 	@echo "make bench      seconds, memory and accuracy of the optimisation, some minutes"
 	@echo "make lint       ruff: format and lint"
-	@echo "make clean      remove .venv and caches"
+	@echo "make clean      remove these environments"
 
 $(READY): pyproject.toml constraints.txt tools/setup.py
 	$(PYTHON) tools/setup.py
@@ -39,6 +44,10 @@ test-long: $(READY)
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py
 	$(BIN)/python -m pytest -m browser -rs -s
+
+test-oldest test-newest: test-%:
+	$(PYTHON) tools/setup.py --versions $*
+	.venv-$*/$(SCRIPTS)/python -m pytest -n auto --dist loadfile
 
 notebooks: $(READY)
 	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb

@@ -208,10 +208,14 @@ def _normals(d1, d2):
 
 
 def _against(normal, neighbours):
-    """The faces whose normals point against the sum of those of their neighbours."""
+    """The faces whose normals point against the sum of those of their neighbours.
+
+    Two neighbours may point against each other: their sum is zero, and says nothing.
+    """
     or_zero = np.concatenate([normal, np.zeros((1, 3))])  # number -1 is no neighbour
     around = sum(or_zero[faces] for faces in neighbours.T)
-    return np.flatnonzero(np.einsum("ij,ij->i", normal, around) < 0)
+    rounding = 1e-12  # of a sum of up to four unit normals, well below any true cosine
+    return np.flatnonzero(np.einsum("ij,ij->i", normal, around) < -rounding)
 
 
 def flipped(V, Q, neighbours=None):

@@ -68,6 +68,50 @@ def test_every_declared_package_is_pinned_within_its_range():
         assert pins[requirement.name.lower()] in requirement.specifier, requirement
 
 
+def test_the_oldest_set_is_every_declared_package_at_its_only_bound():
+    import setup
+
+    oldest = {r.name: r for r in map(Requirement, setup.oldest())}
+    assert len(oldest) == len(setup.oldest()) == len(declared())
+    for requirement in declared():
+        (bound,) = requirement.specifier
+        (pin,) = oldest[requirement.name].specifier
+        assert (bound.operator, pin.operator) == (">=", "=="), requirement
+        assert pin.version == bound.version, requirement
+        assert oldest[requirement.name].extras == requirement.extras, requirement
+
+
+@pytest.mark.parametrize("versions", ["pinned", "oldest", "newest"])
+def test_setup_installs_the_versions_it_was_asked_for(versions, tmp_path, monkeypatch):
+    """In a folder of its own and with no network: the commands are only written down."""
+    import setup
+
+    commands, folder = [], tmp_path / setup.FOLDERS[versions]
+    pins = setup.oldest()
+
+    def run(command, cwd=None):
+        commands.append([str(word) for word in command])
+        folder.mkdir(exist_ok=True)
+        return subprocess.CompletedProcess(command, 0)
+
+    folder.mkdir()
+    (folder / "left").touch()
+    monkeypatch.setattr(setup, "ROOT", tmp_path)
+    monkeypatch.setattr(setup, "oldest", lambda: pins)
+    monkeypatch.setattr(setup.subprocess, "run", run)
+    monkeypatch.setattr(sys, "argv", ["setup.py", "--versions", versions])
+    assert setup.main() == 0
+    assert commands[0] == [sys.executable, "-m", "venv", str(folder)]
+    project = ["-e", ".[view,cad,test]"]
+    wanted = {"pinned": ["-c", "constraints.txt"], "oldest": pins, "newest": []}[versions]
+    quiet = ["--quiet", "--disable-pip-version-check"]
+    assert commands[1][1:] == ["-m", "pip", "install", *quiet, *wanted, *project]
+    assert (folder / "left").exists() == (versions == "pinned")
+    assert f"{folder.name}/" in (ROOT / ".gitignore").read_text().split()
+    monkeypatch.setattr(sys, "argv", ["setup.py", "--remove"])
+    assert setup.main() == 0 and not folder.exists()
+
+
 def test_the_package_list_names_every_module_folder():
     packages = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"][
         "packages"

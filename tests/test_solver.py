@@ -79,7 +79,8 @@ def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
         residual, J, slopes = steps.equations(given, V, goal, s)
         np.testing.assert_allclose(J @ d.ravel() - slopes @ ds, -residual, atol=1e-10)
         # the same by LAPACK: eliminate s by projecting on what the slopes cannot reach
-        keep = np.linalg.svd(slopes)[0][:, np.linalg.matrix_rank(slopes) :]
+        rank = np.linalg.matrix_rank(slopes) if slopes.size else 0  # older numpy refuses none
+        keep = np.linalg.svd(slopes)[0][:, rank:]
         least = np.linalg.lstsq(keep.T @ J.toarray(), -keep.T @ residual, rcond=None)[0]
         np.testing.assert_allclose(d.ravel(), least, atol=1e-10)
 

@@ -1,9 +1,11 @@
 """Make .venv beside this folder and install the project with its tests, at pinned versions.
 
-    python tools/setup.py             make or update .venv
-    python tools/setup.py --remove    remove it
+    python tools/setup.py                    make or update .venv
+    python tools/setup.py --versions oldest  make .venv-oldest, all declared lowest versions
+    python tools/setup.py --versions newest  make .venv-newest, whatever is newest today
+    python tools/setup.py --remove           remove all of them
 
-Needs Python >= 3.11 and the network; nothing outside .venv changes.
+Needs Python >= 3.11 and the network; nothing outside these folders changes.
 """
 
 import argparse
@@ -13,30 +15,47 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-VENV = ROOT / ".venv"
+FOLDERS = {"pinned": ".venv", "oldest": ".venv-oldest", "newest": ".venv-newest"}
+
+
+def oldest():
+    """Every declared package at its lower bound, for pip: `name==bound`."""
+    import tomllib  # only here: main has a sentence for a Python that is too old to have it
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"].values()
+    declared = [*project["dependencies"], *(package for extra in extras for package in extra)]
+    return [package.replace(">=", "==") for package in declared]
 
 
 def main():
-    """Exit code 0 when .venv is ready; a sentence and 1 when not."""
+    """Exit code 0 when the environment is ready; a sentence and 1 when not."""
     if sys.version_info < (3, 11):
         return f"Python {sys.version.split()[0]} is too old: 3.11 or newer is needed (PYTHON=...)"
     parser = argparse.ArgumentParser(description="Make .venv and install the project into it.")
-    parser.add_argument("--remove", action="store_true", help="remove .venv instead")
-    if parser.parse_args().remove:
-        shutil.rmtree(VENV, ignore_errors=True)
+    parser.add_argument("--versions", choices=FOLDERS, default="pinned", help="which packages")
+    parser.add_argument("--remove", action="store_true", help="remove the environments instead")
+    arguments = parser.parse_args()
+    if arguments.remove:
+        for folder in FOLDERS.values():
+            shutil.rmtree(ROOT / folder, ignore_errors=True)
         return 0
-    python = VENV / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", VENV]).returncode:
-        shutil.rmtree(VENV, ignore_errors=True)
+    versions = arguments.versions
+    venv = ROOT / FOLDERS[versions]
+    python = venv / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
+    if versions != "pinned":  # from nothing: what another day or another Python left is no test
+        shutil.rmtree(venv, ignore_errors=True)
+    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", venv]).returncode:
+        shutil.rmtree(venv, ignore_errors=True)
         return (
             "no virtual environment could be made (on Debian and Ubuntu: apt install python3-venv)"
         )
-    print("installing the packages of constraints.txt into .venv ...", flush=True)
+    print(f"installing the {versions} packages into {venv.name} ...", flush=True)
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    project = ["-c", "constraints.txt", "-e", ".[view,cad,test]"]
-    if subprocess.run([*pip, *project], cwd=ROOT).returncode:
+    chosen = {"pinned": ["-c", "constraints.txt"], "oldest": oldest(), "newest": []}[versions]
+    if subprocess.run([*pip, *chosen, "-e", ".[view,cad,test]"], cwd=ROOT).returncode:
         return "the packages could not be installed: see pip's message above"
-    (VENV / "ready").touch()
+    (venv / "ready").touch()
     return 0
 
 
