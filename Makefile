@@ -13,18 +13,18 @@ READY := .venv/ready
 	notebooks explore bench lint clean
 
 help:
-	@echo "make figures    run every notebook and redraw figures/"
-	@echo "make test       all tests, every notebook rerun from the first cell"
-	@echo "make test-fast  the tests without the notebooks and without a browser"
-	@echo "make test-long  what another processor would draw, all settings, some 20 minutes"
+	@echo "make figures       run every notebook and redraw figures/"
+	@echo "make test          all tests, every notebook rerun from the first cell"
+	@echo "make test-fast     the tests without notebooks, browser and other processors"
+	@echo "make test-long     what other processors would draw, in all settings; half an hour"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
-	@echo "make test-oldest  all tests with every declared package at its lower bound"
-	@echo "make test-newest  all tests with the newest packages, whatever they are today"
-	@echo "make explore    turn the angles of nets in your browser (FILE=surface.obj for your own)"
-	@echo "make notebooks  open the notebooks in JupyterLab, on this machine only"
-	@echo "make bench      seconds, memory and accuracy of the optimisation, some minutes"
-	@echo "make lint       ruff: format and lint"
-	@echo "make clean      remove these environments"
+	@echo "make test-oldest   all tests with every declared package at its lower bound"
+	@echo "make test-newest   all tests with the newest packages, whatever they are today"
+	@echo "make explore       turn the angles of nets in your browser (FILE=surface.obj for your own)"
+	@echo "make notebooks     open the notebooks in JupyterLab, on this machine only"
+	@echo "make bench         seconds, memory and accuracy of the optimisation, some minutes"
+	@echo "make lint          ruff: format and lint"
+	@echo "make clean         remove the environments"
 
 $(READY): pyproject.toml constraints.txt tools/setup.py
 	$(PYTHON) tools/setup.py
