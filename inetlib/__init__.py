@@ -6,48 +6,7 @@ counter-clockwise with v1 at the top left (see `inetlib.mesh`).  Angles are radi
 Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
 """
 
-from importlib.metadata import version
-
-from . import (
-    adjacency,
-    clean,
-    conformal,
-    constraints,
-    curves,
-    design,
-    developable,
-    exactness,
-    examples,
-    flatten,
-    forms,
-    freedom,
-    goals,
-    grids,
-    guided,
-    io,
-    kinematic,
-    linear,
-    loxodrome,
-    matrixfree,
-    measure,
-    mesh,
-    moebius,
-    nearest,
-    outline,
-    overlay,
-    parallelogram,
-    pencil,
-    planar,
-    problem,
-    reference,
-    rings,
-    runs,
-    singular,
-    solver,
-    steps,
-    surfaces,
-    survey,
-)
+from importlib import import_module
 
 __all__ = [
     "NotConverged",
@@ -90,5 +49,21 @@ __all__ = [
     "surfaces",
     "survey",
 ]
-NotConverged = solver.NotConverged
-__version__ = version("inetlib")
+
+
+def __getattr__(name):
+    """Modules are loaded when they are first used: `import inetlib` takes no time."""
+    if name == "NotConverged":
+        value = import_module(".solver", __name__).NotConverged
+    elif name == "__version__":
+        value = import_module("importlib.metadata").version("inetlib")
+    elif name in __all__:
+        value = import_module(f".{name}", __name__)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    return sorted({*globals(), *__all__, "__version__"})

@@ -18,15 +18,13 @@ name; a missing package is an ImportError that says what to install.
 Paper: Sec. 6 (files; beyond the paper).
 """
 
-import os
-import secrets
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from . import mesh, repair
+from . import files, mesh, repair
 from .binaryfiles import read_ply, read_stl, write_ply
 from .cadfiles import read_vtp, write_3dm, write_dxf, write_vtp
 from .glb import read_glb, write_glb
@@ -208,8 +206,14 @@ def write(path, V, Q, curves=None, polygons=(), force=False):
     families = _families(curves, Q, len(V))
     if families and path.suffix.lower() not in WITH_CURVES:
         raise ValueError(f"{path}: no place for curves; write one of {' '.join(WITH_CURVES)}")
-    with _replacing(path, force) as temporary:
-        writer(temporary, V, Q, polygons, families)
+    if path.is_dir():
+        raise ValueError(f"{path} is a directory: the name of a file is wanted")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.parent}")
+    if path.exists() and not force:
+        raise FileExistsError(f"{path} exists already: force=True replaces it")
+    with files.replacing(path) as new:
+        writer(new, V, Q, polygons, families)
 
 
 def _families(curves, Q, count):
@@ -235,20 +239,3 @@ def _indices(given, count, least, what):
         bad = indices.min() if indices.min() < 0 else indices.max()
         raise ValueError(f"a {what} names vertex {bad}, but there are 0 to {count - 1}")
     return indices.astype(np.int64)
-
-
-@contextmanager
-def _replacing(path, force):
-    """A new name beside the path, renamed onto it when the block ends well, else removed."""
-    if path.is_dir():
-        raise ValueError(f"{path} is a directory: the name of a file is wanted")
-    if not path.parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.parent}")
-    if path.exists() and not force:
-        raise FileExistsError(f"{path} exists already: force=True replaces it")
-    temporary = path.with_name(f".new-{secrets.token_hex(4)}{path.suffix.lower()}")
-    try:
-        yield temporary
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -9,8 +9,6 @@ Paper: Figs. 1-13.
 import hashlib
 import io
 import json
-import os
-import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
@@ -20,6 +18,7 @@ import numpy as np
 import PIL.Image
 
 from . import measure
+from .files import replacing
 
 DIGITS = 6  # of the data in the hash; angles are reported to 1e-9 degrees
 
@@ -107,7 +106,7 @@ def save(drawing, folder):
     text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False)
     names = "manifest.json", f"{drawing.name}.svg", f"{drawing.name}.png"
     with ExitStack() as stack:
-        listing, svg, png = (stack.enter_context(_replacing(folder / name)) for name in names)
+        listing, svg, png = (stack.enter_context(replacing(folder / name)) for name in names)
         drawing.figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
         drawing.figure.savefig(png, format="png", metadata={"Software": None})
         Path(listing).write_text(text + "\n", encoding="utf-8", newline="\n")
@@ -120,7 +119,7 @@ def save_text(text, path):
     Paper: Table 1.
     """
     path = Path(path)
-    with _replacing(path) as name:
+    with replacing(path) as name:
         Path(name).write_text(text, encoding="utf-8", newline="\n")
 
 
@@ -159,22 +158,3 @@ def read_manifest(folder):
 
 def _rounded(degrees):
     return None if np.isnan(degrees) else round(degrees, 9) + 0.0
-
-
-class _replacing:
-    """A temporary name beside `path`, renamed onto it when the block ends well."""
-
-    def __init__(self, path):
-        self.path = path
-
-    def __enter__(self):
-        handle, self.temporary = tempfile.mkstemp(dir=self.path.parent, prefix=".new-")
-        os.close(handle)
-        return self.temporary
-
-    def __exit__(self, kind, error, trace):
-        if kind is None:
-            os.chmod(self.temporary, 0o644)
-            os.replace(self.temporary, self.path)
-        else:
-            os.unlink(self.temporary)

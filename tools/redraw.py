@@ -8,19 +8,32 @@ tagged `timing` print stay those of the first run, or every run would change it.
 the end shows, for each figure, the largest deviation of theta and theta0 over all its faces.
 """
 
+import sys
+
+from inetlib.start import ENDS, finished, held, listen
+
+if __name__ == "__main__":  # before the slow imports
+    words = "redraw: stopped, notebooks that were not finished are as they were"
+    listen(lambda: words, fresh=True)
+
 import argparse
 import os
-import sys
+import signal
 import tempfile
 import time
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 
+import matplotlib
 import nbformat
+from jupyter_client import AsyncKernelManager
+from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, DeadKernelError
 from tqdm import tqdm
 
-from inetlib import publish, view
+from inetlib import files, publish, view
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -40,6 +53,7 @@ def main(arguments=None):
         except ValueError:
             print(f"redraw: {path} is not a notebook: restore it with git", file=sys.stderr)
             return 2
+    tidy()
     total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
     seconds = {}
     with tqdm(total=total, unit="cell") as bar:
@@ -79,20 +93,70 @@ def run(notebook, folder, bar):
                 seconds[tag] = time.perf_counter() - started[cell_index]
         bar.update()
 
-    NotebookClient(
+    client = NotebookClient(
         notebook,
         timeout=600,
-        kernel_name="python3",
         record_timing=False,
         coalesce_streams=True,  # else prints may be split in two, or not, from run to run
         extra_arguments=["--log-level=40"],
-        resources={"metadata": {"path": str(folder)}},
         on_cell_execute=start,
         on_cell_executed=done,
-    ).execute()
+    )
+    with kernel(client, folder):
+        for k, cell in enumerate(notebook.cells):  # `execute` would take our signal handlers away
+            client.execute_cell(cell, k, execution_count=client.code_cells_executed + 1)
     for k, outputs in stored.items():
         keep_or_renew(notebook.cells[k], outputs)
     return seconds
+
+
+@contextmanager
+def kernel(client, folder):
+    """A kernel for the client, in this folder, that ends with the block or with this process."""
+    with files.scratch(tempfile.gettempdir()) as own:
+        client.km = AsyncKernelManager(
+            connection_file=str(own / "connection.json"),
+            kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),  # the one of this environment
+        )
+        try:
+            with held():
+                client.start_new_kernel(cwd=str(folder), env=environment(own))
+                ENDS.append(partial(end, client.km.provisioner.process))
+            with client.setup_kernel(cleanup_kc=True):
+                yield
+        finally:
+            while ENDS:
+                ENDS.pop()()
+
+
+def environment(folder):
+    """What a kernel needs to draw alike for everybody; folder: an empty one, for its settings."""
+    own = os.environ | {
+        "IPYTHONDIR": str(folder),
+        "MATPLOTLIBRC": matplotlib.get_data_path(),
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    }
+    for name in ("PYTHONSTARTUP", "JPY_SESSION_NAME"):  # the latter says that a person looks on
+        own.pop(name, None)
+    return own
+
+
+def end(process):
+    """Kill a kernel, if it lives, with what it started; remove what it leaves half written."""
+    with suppress(OSError):
+        if os.name == "nt":
+            process.kill()
+            process.wait(2)
+        else:
+            os.killpg(process.pid, signal.SIGKILL)  # jupyter_client made it a group of its own
+            os.waitpid(process.pid, 0)  # until then its number counts as alive
+    tidy()
+
+
+def tidy():
+    """Remove what a killed run has left half written."""
+    for folder in ("notebooks", "figures", "figures/data"):
+        files.sweep(ROOT / folder)
 
 
 def keep_or_renew(cell, stored):
@@ -119,11 +183,8 @@ def store(notebook, path):
     text = nbformat.writes(notebook) + "\n"
     if text == path.read_text(encoding="utf-8"):
         return
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".new-")
-    with os.fdopen(handle, "w", encoding="utf-8") as file:
-        file.write(text)
-    os.chmod(temporary, 0o644)
-    os.replace(temporary, path)
+    with files.replacing(path) as new:
+        new.write_text(text, encoding="utf-8")
 
 
 def table(seconds):
@@ -139,4 +200,6 @@ def table(seconds):
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    finished()
+    sys.exit(code)

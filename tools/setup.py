@@ -41,4 +41,10 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        if not list(VENV.glob("*/pip*")):  # without pip it is of no use, and in the way
+            shutil.rmtree(VENV, ignore_errors=True)
+        print("\nsetup: stopped, run it again to go on", file=sys.stderr)
+        sys.exit(130)

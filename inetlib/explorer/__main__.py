@@ -2,7 +2,7 @@
 
 import sys
 
-from inetlib.cli import main
+from inetlib.start import main
 
 if __name__ == "__main__":
     sys.exit(main(["explore", *sys.argv[1:]]))

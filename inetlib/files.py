@@ -1,0 +1,105 @@
+"""Files that appear whole or not at all, and nothing left beside them.
+
+A file is written beside its place, under a name `.new-PID-...`, and renamed when complete.
+What a process that was killed has left is removed by the next that writes into the folder.
+Nothing slow is imported: `start` needs this module before all others.
+
+Paper: Sec. 6 (files; beyond the paper).
+"""
+
+import os
+import re
+import shutil
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+LIVE = set()  # the temporary files and folders of this process
+WRITTEN = []  # the files that this process has put in their places
+
+
+@contextmanager
+def replacing(path):
+    """A name beside `path` to write to, renamed onto it when the block ends well, else removed.
+
+    It ends like `path`, as writers look at the suffix.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    path = Path(path)
+    with _temporary(path.parent, path.suffix.lower()) as new:
+        yield new
+        WRITTEN.append(path)  # before it is true: who is stopped between must not deny it
+        os.replace(new, path)
+
+
+@contextmanager
+def scratch(folder):
+    """A new, empty folder in `folder`, removed at the end of the block.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    with _temporary(Path(folder)) as new:
+        new.mkdir()
+        yield new
+
+
+@contextmanager
+def _temporary(folder, suffix=""):
+    sweep(folder)
+    new = folder / f".new-{os.getpid()}-{os.urandom(4).hex()}{suffix}"
+    LIVE.add(new)
+    try:
+        yield new
+    finally:
+        _remove(new)
+        LIVE.discard(new)
+
+
+def clear():
+    """Remove the temporary files and folders of this process: it is about to end.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    for path in list(LIVE):
+        _remove(path)
+
+
+def sweep(folder):
+    """Remove what processes that are gone have left in a folder, which need not be there.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    folder, live = Path(folder), {path.name for path in LIVE}
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            found = re.match(r"\.new-(\d{1,9})-", name)
+            if found and name not in live and _gone(int(found[1])):
+                _remove(folder / name)
+
+
+def _remove(path):
+    with suppress(OSError):  # on Windows a file that is open stays, for the next sweep
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+
+
+def _gone(pid):
+    """Whether no other process has this number."""
+    if pid == os.getpid():  # what carries it was left by another: it is not in LIVE
+        return True
+    if os.name == "nt":  # there os.kill would end the process
+        import ctypes
+
+        handle = ctypes.windll.kernel32.OpenProcess(0x1000, False, pid)  # to ask, nothing else
+        if handle:
+            ctypes.windll.kernel32.CloseHandle(handle)
+        return not handle
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    except OSError:  # somebody else's
+        pass
+    return False

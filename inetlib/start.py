@@ -1,0 +1,89 @@
+"""The way in of `inet`, as a process of its own: Ctrl-C ends it at any moment, with a sentence.
+
+A KeyboardInterrupt that is raised while packages are loaded, or in callbacks, becomes another
+error or gets lost.  So nothing is raised: the handler tidies up, speaks, and ends the process.
+It is installed before the slow imports, and only by programs; `cli.main` installs none.
+
+Paper: Sec. 6 (command line; beyond the paper).
+"""
+
+import os
+import signal
+import sys
+from contextlib import contextmanager, suppress
+
+from . import files
+
+SIGNALS = signal.SIGINT, signal.SIGTERM
+ENDS = []  # functions without arguments that end what this process has started
+
+
+def main(arguments=None):
+    """`cli.main` for a process of its own: the exit code, or the end by a signal: 130.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    words = sys.argv[1:] if arguments is None else arguments
+    quiet = words[:1] in (["figures"], ["explore"])
+
+    def sentence():
+        return "inet: stopped" + ", nothing was written" * (not quiet and not files.WRITTEN)
+
+    listen(sentence)
+    from .cli import main as run  # slow: after the handler
+
+    code = run(arguments)
+    finished()
+    return code
+
+
+def listen(sentence, fresh=False):
+    """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
+
+    sentence() is said on stderr; fresh: on a new line, where a progress bar may be.  A signal
+    that was ignored stays so, as for programs in the background of a script.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+
+    def stop(number, frame):
+        for other in SIGNALS:
+            signal.signal(other, signal.SIG_IGN)
+        try:
+            for end in ENDS:
+                end()
+            files.clear()
+        finally:
+            with suppress(OSError):  # nobody may be there to read it
+                line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
+                os.write(2, line.encode())  # sys.stderr may be in the midst of a line
+            os._exit(128 + number)
+
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, stop)
+
+
+def finished():
+    """The work is done: Ctrl-C no longer changes how this process ends.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def held():
+    """Signals wait until the block has ended: it starts what must be known to be ended.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    waiting = []
+    handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for number in waiting:
+            signal.raise_signal(number)
