@@ -7,13 +7,29 @@ Needs Python >= 3.11 and the network; nothing outside .venv changes.
 """
 
 import argparse
+import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
+
+
+def run(command):
+    """Run a command in the project's folder: its exit code.  Ctrl-C ends it with all it began."""
+    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True)  # hears no Ctrl-C
+    try:
+        return process.wait()
+    except KeyboardInterrupt:
+        if os.name == "nt":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        raise
 
 
 def main():
@@ -26,7 +42,8 @@ def main():
         shutil.rmtree(VENV, ignore_errors=True)
         return 0
     python = VENV / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", VENV]).returncode:
+    whole = list(VENV.glob("*/pip*"))  # pip comes last
+    if not whole and run([sys.executable, "-m", "venv", VENV]):
         shutil.rmtree(VENV, ignore_errors=True)
         return (
             "no virtual environment could be made (on Debian and Ubuntu: apt install python3-venv)"
@@ -34,7 +51,7 @@ def main():
     print("installing the packages of constraints.txt into .venv ...", flush=True)
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     project = ["-c", "constraints.txt", "-e", ".[view,cad,test]"]
-    if subprocess.run([*pip, *project], cwd=ROOT).returncode:
+    if run([*pip, *project]):
         return "the packages could not be installed: see pip's message above"
     (VENV / "ready").touch()
     return 0
@@ -44,7 +61,5 @@ if __name__ == "__main__":
     try:
         sys.exit(main())
     except KeyboardInterrupt:
-        if not list(VENV.glob("*/pip*")):  # without pip it is of no use, and in the way
-            shutil.rmtree(VENV, ignore_errors=True)
         print("\nsetup: stopped, run it again to go on", file=sys.stderr)
         sys.exit(130)
