@@ -52,15 +52,18 @@ __all__ = [
 
 
 def __getattr__(name):
-    """Modules are loaded when they are first used."""
+    """Modules are loaded when they are first used: `import inetlib` takes no time."""
     if name == "NotConverged":
-        return import_module(".solver", __name__).NotConverged
-    if name == "__version__":
-        return import_module("importlib.metadata").version(__name__)
-    if name in __all__:
-        return import_module(f".{name}", __name__)
-    raise AttributeError(f"module {__name__} has no attribute {name}")
+        value = import_module(".solver", __name__).NotConverged
+    elif name == "__version__":
+        value = import_module("importlib.metadata").version("inetlib")
+    elif name in __all__:
+        value = import_module(f".{name}", __name__)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
 
 
 def __dir__():
-    return [*globals(), *__all__, "__version__"]
+    return sorted({*globals(), *__all__, "__version__"})

@@ -22,6 +22,7 @@ from . import (
     clean,
     design,
     examples,
+    files,
     io,
     loxodrome,
     mesh,
@@ -73,6 +74,7 @@ def main(arguments=None):
         "explore": _explore,
         "figures": _figures,
     }
+    written = len(files.WRITTEN)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -80,7 +82,7 @@ def main(arguments=None):
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
-        quiet = given.command in ("figures", "explore")
+        quiet = given.command in ("figures", "explore") or len(files.WRITTEN) > written
         return _tell("stopped" + ", nothing was written" * (not quiet), STOPPED)
     except BrokenPipeError:  # the reader of our output went away, for example `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -261,14 +263,8 @@ def _finish(given, V, Q, polygons, numbers, notes):
     good = numbers["converged"]
     written = good or given.keep
     if written:
-        io.write(
-            given.output,
-            V,
-            Q,
-            paths.curves(given.output, Q, given.curves),
-            polygons,
-            force=given.force,
-        )
+        lines = paths.curves(given.output, Q, given.curves)
+        io.write(given.output, V, Q, lines, polygons, force=given.force)
     about = report.net(V, Q, polygons, _wanted(given))
     _say(given, {"file": given.output if written else None, **numbers, **about, "notes": notes})
     if not good:

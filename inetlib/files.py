@@ -1,109 +1,105 @@
-"""Files that are never half written: made under a temporary name beside their place, then renamed.
+"""Files that appear whole or not at all, and nothing left beside them.
 
-A process that is killed leaves its temporary names; the next one that writes into the same
-folder removes them.
+A file is written beside its place, under a name `.new-PID-...`, and renamed when complete.
+What a process that was killed has left is removed by the next that writes into the folder.
+Nothing slow is imported: `start` needs this module before all others.
 
 Paper: Sec. 6 (files; beyond the paper).
 """
 
-import contextlib
 import os
 import re
-import secrets
 import shutil
-import sys
-import time
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
-PREFIX = ".new-"
-TEMPORARY = re.compile(re.escape(PREFIX) + r"(\d+)-")
-MINUTE = 60  # seconds
-_ours = {}  # {temporary name: the place it is renamed to, or None} of this process
-_written = []  # places that were renamed to, the last one perhaps not yet
+LIVE = set()  # the temporary files and folders of this process
+WRITTEN = []  # the files that this process has put in their places
 
 
-@contextlib.contextmanager
+@contextmanager
 def replacing(path):
-    """A temporary name beside `path`, with its suffix; renamed onto it if the block ends well.
+    """A name beside `path` to write to, renamed onto it when the block ends well, else removed.
 
-    Whoever uses it writes the file; what is at `path` stays until then.
+    It ends like `path`, as writers look at the suffix.
 
     Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
-    with _temporary(path.parent, path.suffix.lower(), path) as name:
-        yield name
-        _written.append(path)
-        os.replace(name, path)
+    with _temporary(path.parent, path.suffix.lower()) as new:
+        yield new
+        WRITTEN.append(path)  # before it is true: who is stopped between must not deny it
+        os.replace(new, path)
 
 
-@contextlib.contextmanager
+@contextmanager
 def scratch(folder):
-    """A temporary folder in `folder`, removed at the end.
+    """A new, empty folder in `folder`, removed at the end of the block.
 
     Paper: Sec. 6 (files; beyond the paper).
     """
-    with _temporary(Path(folder), "", None) as name:
-        name.mkdir()
-        yield name
+    with _temporary(Path(folder)) as new:
+        new.mkdir()
+        yield new
 
 
-@contextlib.contextmanager
-def _temporary(folder, suffix, place):
+@contextmanager
+def _temporary(folder, suffix=""):
     sweep(folder)
-    name = folder / f"{PREFIX}{os.getpid()}-{secrets.token_hex(4)}{suffix}"
-    _ours[name] = place
+    new = folder / f".new-{os.getpid()}-{os.urandom(4).hex()}{suffix}"
+    LIVE.add(new)
     try:
-        yield name
+        yield new
     finally:
-        _remove(name)
-        del _ours[name]
+        _remove(new)
+        LIVE.discard(new)
+
+
+def clear():
+    """Remove the temporary files and folders of this process: it is about to end.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
+    for path in list(LIVE):
+        _remove(path)
 
 
 def sweep(folder):
-    """Remove what processes that no longer run have left in a folder.
+    """Remove what processes that are gone have left in a folder, which need not be there.
 
     Paper: Sec. 6 (files; beyond the paper).
     """
-    for path in Path(folder).glob(f"{PREFIX}*"):
-        owner = TEMPORARY.match(path.name)
-        if owner and path not in _ours and _is_left(path, int(owner[1])):
-            _remove(path)
-
-
-def _is_left(path, owner):
-    """Whether the process of number `owner` that made the path has ended."""
-    if owner == os.getpid():
-        return True  # an earlier process had our number
-    if sys.platform == "win32":  # where os.kill(owner, 0) would end it
-        with contextlib.suppress(OSError):
-            return time.time() - path.stat().st_mtime > MINUTE
-        return False
-    try:
-        os.kill(owner, 0)
-    except ProcessLookupError:
-        return True
-    except OSError:  # it belongs to somebody else
-        pass
-    return False
-
-
-def discard():
-    """Remove the temporary names of this process, which is about to end; whether it wrote a file.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
-    last = _written[-1] if _written else None
-    begun = [name for name, place in _ours.items() if place is not None and place == last]
-    done = last is not None and not any(name.exists() for name in begun)
-    for name in list(_ours):
-        _remove(name)
-    return done
+    folder, live = Path(folder), {path.name for path in LIVE}
+    with suppress(OSError):
+        for name in os.listdir(folder):
+            found = re.match(r"\.new-(\d{1,9})-", name)
+            if found and name not in live and _gone(int(found[1])):
+                _remove(folder / name)
 
 
 def _remove(path):
-    with contextlib.suppress(OSError):  # it is gone, or still open on Windows
-        if path.is_dir():
-            shutil.rmtree(path)
+    with suppress(OSError):  # on Windows a file that is open stays, for the next sweep
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
         else:
-            path.unlink()
+            path.unlink(missing_ok=True)
+
+
+def _gone(pid):
+    """Whether no other process has this number."""
+    if pid == os.getpid():  # what carries it was left by another: it is not in LIVE
+        return True
+    if os.name == "nt":  # there os.kill would end the process
+        import ctypes
+
+        handle = ctypes.windll.kernel32.OpenProcess(0x1000, False, pid)  # to ask, nothing else
+        if handle:
+            ctypes.windll.kernel32.CloseHandle(handle)
+        return not handle
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    except OSError:  # somebody else's
+        pass
+    return False

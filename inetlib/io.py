@@ -206,18 +206,14 @@ def write(path, V, Q, curves=None, polygons=(), force=False):
     families = _families(curves, Q, len(V))
     if families and path.suffix.lower() not in WITH_CURVES:
         raise ValueError(f"{path}: no place for curves; write one of {' '.join(WITH_CURVES)}")
-    _check_place(path, force)
-    with files.replacing(path) as temporary:
-        writer(temporary, V, Q, polygons, families)
-
-
-def _check_place(path, force):
     if path.is_dir():
         raise ValueError(f"{path} is a directory: the name of a file is wanted")
     if not path.parent.is_dir():
         raise ValueError(f"{path}: there is no folder {path.parent}")
     if path.exists() and not force:
         raise FileExistsError(f"{path} exists already: force=True replaces it")
+    with files.replacing(path) as new:
+        writer(new, V, Q, polygons, families)
 
 
 def _families(curves, Q, count):

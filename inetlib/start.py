@@ -1,58 +1,89 @@
-"""The program `inet` as a process of its own: Ctrl-C ends it with one sentence, at any moment.
+"""The way in of `inet`, as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-A KeyboardInterrupt is lost, or becomes another error, when it comes while a module is loaded,
-in the callback of a library or in a destructor.  Here the signal raises nothing: it clears up
-and ends the process.  Nothing is imported before it is watched for.
+A KeyboardInterrupt that is raised while packages are loaded, or in callbacks, becomes another
+error or gets lost.  So nothing is raised: the handler tidies up, speaks, and ends the process.
+It is installed before the slow imports, and only by programs; `cli.main` installs none.
+
+Paper: Sec. 6 (command line; beyond the paper).
 """
 
 import os
 import signal
 import sys
+from contextlib import contextmanager, suppress
 
-STOPPED = 130
-_last = []  # functions to call before the end
+from . import files
+
+SIGNALS = signal.SIGINT, signal.SIGTERM
+ENDS = []  # functions without arguments that end what this process has started
 
 
 def main(arguments=None):
-    """Run `inet`: the exit code.
+    """`cli.main` for a process of its own: the exit code, or the end by a signal: 130.
 
     Paper: Sec. 6 (command line; beyond the paper).
     """
-    given = sys.argv[1:] if arguments is None else arguments
-    watch("inet", "" if given[:1] in (["figures"], ["explore"]) else ", nothing was written")
-    from .cli import main as run
+    words = sys.argv[1:] if arguments is None else arguments
+    quiet = words[:1] in (["figures"], ["explore"])
 
-    code = run(given)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done, Python only cleans up
+    def sentence():
+        return "inet: stopped" + ", nothing was written" * (not quiet and not files.WRITTEN)
+
+    listen(sentence)
+    from .cli import main as run  # slow: after the handler
+
+    code = run(arguments)
+    finished()
     return code
 
 
-def watch(program, words=""):
-    """From now on Ctrl-C says "PROGRAM: stopped" and ends this process with code 130.
+def listen(sentence, fresh=False):
+    """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    words: added to the sentence as long as no file was written.
+    sentence() is said on stderr; fresh: on a new line, where a progress bar may be.  A signal
+    that was ignored stays so, as for programs in the background of a script.
 
     Paper: Sec. 6 (command line; beyond the paper).
     """
 
     def stop(number, frame):
-        signal.signal(number, signal.SIG_IGN)
-        files = sys.modules.get("inetlib.files")
-        wrote = files is not None and files.discard()
-        bars = getattr(sys.modules.get("tqdm"), "tqdm", None)
-        line = "\n" if getattr(bars, "_instances", ()) else ""  # below a progress bar
-        os.write(2, f"{line}{program}: stopped{'' if wrote else words}\n".encode())
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what else ends now need not say so
-        for end in _last:
-            end()
-        os._exit(STOPPED)
+        for other in SIGNALS:
+            signal.signal(other, signal.SIG_IGN)
+        try:
+            for end in ENDS:
+                end()
+            files.clear()
+        finally:
+            with suppress(OSError):  # nobody may be there to read it
+                line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
+                os.write(2, line.encode())  # sys.stderr may be in the midst of a line
+            os._exit(128 + number)
 
-    signal.signal(signal.SIGINT, stop)
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, stop)
 
 
-def at_stop(function):
-    """Call a function, without arguments, before Ctrl-C ends the process.
+def finished():
+    """The work is done: Ctrl-C no longer changes how this process ends.
 
     Paper: Sec. 6 (command line; beyond the paper).
     """
-    _last.append(function)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def held():
+    """Signals wait until the block has ended: it starts what must be known to be ended.
+
+    Paper: Sec. 6 (command line; beyond the paper).
+    """
+    waiting = []
+    handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        for number in waiting:
+            signal.raise_signal(number)

@@ -7,7 +7,6 @@ tools/outputs.py).  Pictures of another matplotlib than the pinned one need only
 
 import base64
 import io
-import os
 import shutil
 import subprocess
 import sys
@@ -44,7 +43,9 @@ def rerun(request, tmp_path_factory):
     shutil.copy(request.param, copy)
     command = [sys.executable, "-m", "pytest", "--nbmake", "--overwrite", "--nbmake-timeout=300"]
     command += ["-q", "-p", "no:cacheprovider", "--rootdir", str(folder), str(copy)]
-    environment = os.environ | {"PYTEST_ADDOPTS": "", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
+    settings = tmp_path_factory.mktemp("settings")
+    environment = outputs.environment(settings)
+    environment |= {"PYTEST_ADDOPTS": "", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
     done = subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, errors="replace"
     )

@@ -89,16 +89,16 @@ def test_setup_installs_the_versions_it_was_asked_for(versions, tmp_path, monkey
     commands, folder = [], tmp_path / setup.FOLDERS[versions]
     pins = setup.oldest()
 
-    def run(command, cwd=None):
+    def run(command):
         commands.append([str(word) for word in command])
         folder.mkdir(exist_ok=True)
-        return subprocess.CompletedProcess(command, 0)
+        return 0
 
     folder.mkdir()
     (folder / "left").touch()
     monkeypatch.setattr(setup, "ROOT", tmp_path)
     monkeypatch.setattr(setup, "oldest", lambda: pins)
-    monkeypatch.setattr(setup.subprocess, "run", run)
+    monkeypatch.setattr(setup, "run", run)
     monkeypatch.setattr(sys, "argv", ["setup.py", "--versions", versions])
     assert setup.main() == 0
     assert commands[0] == [sys.executable, "-m", "venv", str(folder)]

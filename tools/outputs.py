@@ -11,6 +11,8 @@ import os
 from importlib.metadata import version
 from pathlib import Path
 
+import matplotlib
+
 from inetlib import same, view
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -21,14 +23,15 @@ ALIKE = 255, 0.005  # levels and mean for pictures by OpenGL
 
 
 def environment(folder):
-    """The environment of a kernel, free of what the user has set up for himself.
-
-    folder: an empty one, for IPython and matplotlib to find nothing in.
-    """
-    (folder / "matplotlibrc").touch()
-    mine = {"MPLBACKEND": "module://matplotlib_inline.backend_inline", "IPYTHONDIR": str(folder)}
-    mine |= {"MATPLOTLIBRC": str(folder / "matplotlibrc"), "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
-    return {k: x for k, x in os.environ.items() if k != "PYTHONSTARTUP"} | mine
+    """What a kernel needs to draw alike for everybody; folder: an empty one, for its settings."""
+    own = os.environ | {
+        "IPYTHONDIR": str(folder),
+        "MATPLOTLIBRC": matplotlib.get_data_path(),
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    }
+    for name in ("PYTHONSTARTUP", "JPY_SESSION_NAME"):  # the latter says that a person looks on
+        own.pop(name, None)
+    return own
 
 
 def tags(cell):

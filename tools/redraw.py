@@ -9,26 +9,28 @@ differs by the last digits of this machine is kept (see outputs.py), and so are 
 and theta0 over all its faces, and whether it was kept.
 """
 
-import contextlib
-import os
-import signal
-import subprocess
 import sys
 
-from inetlib import start
+from inetlib.start import ENDS, finished, held, listen
 
-if __name__ == "__main__":  # before anything large is loaded
-    start.watch("redraw", "; a notebook that had not ended is as it was")
+if __name__ == "__main__":  # before the slow imports
+    words = "redraw: stopped, notebooks that were not finished are as they were"
+    listen(lambda: words, fresh=True)
 
 import argparse
 import copy
+import os
+import signal
 import tempfile
 import time
-from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 
 import nbformat
 import outputs
+from jupyter_client import AsyncKernelManager
+from jupyter_client.kernelspec import KernelSpecManager
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError, DeadKernelError
 from tqdm import tqdm
@@ -36,7 +38,6 @@ from tqdm import tqdm
 from inetlib import files, publish
 
 ROOT = Path(__file__).resolve().parent.parent
-RUNNING = []  # the client whose kernel must not outlive this process
 
 
 def main(arguments=None):
@@ -54,9 +55,8 @@ def main(arguments=None):
         except ValueError:
             print(f"redraw: {path} is not a notebook: restore it with git", file=sys.stderr)
             return 2
+    tidy()
     total = sum(cell.cell_type == "code" for nb in notebooks.values() for cell in nb.cells)
-    start.at_stop(end_kernel)
-    sweep()
     seconds, before = {}, stamps()
     with tqdm(total=total, unit="cell") as bar:
         for path, notebook in notebooks.items():
@@ -85,10 +85,10 @@ def run(notebook, folder, bar):
     seconds, started = {}, {}
     stored = copy.deepcopy(notebook.cells)
 
-    def begin(cell, cell_index):
+    def start(cell, cell_index):
         started[cell_index] = time.perf_counter()
 
-    def end(cell, cell_index, execute_reply):
+    def done(cell, cell_index, execute_reply):
         for tag in outputs.tags(cell):
             if tag.startswith(("fig", "table", "beyond")):
                 seconds[tag] = time.perf_counter() - started[cell_index]
@@ -97,51 +97,55 @@ def run(notebook, folder, bar):
     client = NotebookClient(
         notebook,
         timeout=600,
-        kernel_name="python3",
         record_timing=False,
         coalesce_streams=True,  # else prints may be split in two, or not, from run to run
         extra_arguments=["--log-level=40"],
-        resources={"metadata": {"path": str(folder)}},
-        on_cell_execute=begin,
-        on_cell_executed=end,
+        on_cell_execute=start,
+        on_cell_executed=done,
     )
-    RUNNING[:] = [client]
-    with files.scratch(tempfile.gettempdir()) as empty, ThreadPoolExecutor(1) as worker:
-        # nbclient takes over Ctrl-C in the main thread, and loses it: so it works in another
-        done = worker.submit(client.execute, env=outputs.environment(empty))
-        while not done.done():
-            wait([done], timeout=1)  # on Windows Ctrl-C waits for this
-    done.result()
-    RUNNING.clear()
+    with kernel(client, folder):
+        for k, cell in enumerate(notebook.cells):  # `execute` would take our signal handlers away
+            client.execute_cell(cell, k, execution_count=client.code_cells_executed + 1)
     for cell, old in zip(notebook.cells, stored, strict=True):
         if cell.cell_type == "code":
             keep(cell, old)
     return seconds
 
 
-def end_kernel():
-    """Kill the kernel that runs, and what it has started: it leads a session of its own.
+@contextmanager
+def kernel(client, folder):
+    """A kernel for the client, in this folder, that ends with the block or with this process."""
+    with files.scratch(tempfile.gettempdir()) as own:
+        client.km = AsyncKernelManager(
+            connection_file=str(own / "connection.json"),
+            kernel_spec_manager=KernelSpecManager(kernel_dirs=[]),  # the one of this environment
+        )
+        try:
+            with held():
+                client.start_new_kernel(cwd=str(folder), env=outputs.environment(own))
+                ENDS.append(partial(end, client.km.provisioner.process))
+            with client.setup_kernel(cleanup_kc=True):
+                yield
+        finally:
+            while ENDS:
+                ENDS.pop()()
 
-    One that is just being started ends by itself, within a second of this process.
-    """
-    for client in RUNNING:
-        process = getattr(getattr(client.km, "provisioner", None), "process", None)
-        with contextlib.suppress(OSError):
-            if process is not None and os.name == "posix":
-                os.killpg(process.pid, signal.SIGKILL)
-            elif process is not None:
-                process.kill()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            if process is not None:
-                process.wait(2)
-        if client.km is not None:
-            client.km.cleanup_connection_file()
-    sweep()
+
+def end(process):
+    """Kill a kernel, if it lives, with what it started; remove what it leaves half written."""
+    with suppress(OSError):
+        if os.name == "nt":
+            process.kill()
+            process.wait(2)
+        else:
+            os.killpg(process.pid, signal.SIGKILL)  # jupyter_client made it a group of its own
+            os.waitpid(process.pid, 0)  # until then its number counts as alive
+    tidy()
 
 
-def sweep():
-    """Remove what killed processes have left."""
-    for folder in ("notebooks", "figures"):
+def tidy():
+    """Remove what a killed run has left half written."""
+    for folder in ("notebooks", "figures", "figures/data"):
         files.sweep(ROOT / folder)
 
 
@@ -162,8 +166,8 @@ def store(notebook, path):
     text = nbformat.writes(notebook) + "\n"
     if text == path.read_text(encoding="utf-8"):
         return
-    with files.replacing(path) as name:
-        name.write_text(text, encoding="utf-8", newline="\n")
+    with files.replacing(path) as new:
+        new.write_text(text, encoding="utf-8", newline="\n")
 
 
 def stamps():
@@ -188,5 +192,5 @@ def table(seconds, before):
 
 if __name__ == "__main__":
     code = main()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # all is done, Python only cleans up
+    finished()
     sys.exit(code)

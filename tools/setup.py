@@ -9,7 +9,9 @@ Needs Python >= 3.11 and the network; nothing outside these folders changes.
 """
 
 import argparse
+import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -26,6 +28,20 @@ def oldest():
     extras = project["optional-dependencies"].values()
     declared = [*project["dependencies"], *(package for extra in extras for package in extra)]
     return [package.replace(">=", "==") for package in declared]
+
+
+def run(command):
+    """Run a command in the project's folder: its exit code.  Ctrl-C ends it with all it began."""
+    process = subprocess.Popen(command, cwd=ROOT, start_new_session=True)  # hears no Ctrl-C
+    try:
+        return process.wait()
+    except KeyboardInterrupt:
+        if os.name == "nt":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        raise
 
 
 def main():
@@ -45,7 +61,8 @@ def main():
     python = venv / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
     if versions != "pinned":  # from nothing: what another day or another Python left is no test
         shutil.rmtree(venv, ignore_errors=True)
-    if not python.exists() and subprocess.run([sys.executable, "-m", "venv", venv]).returncode:
+    whole = list(venv.glob("*/pip*"))  # pip comes last
+    if not whole and run([sys.executable, "-m", "venv", venv]):
         shutil.rmtree(venv, ignore_errors=True)
         return (
             "no virtual environment could be made (on Debian and Ubuntu: apt install python3-venv)"
@@ -53,11 +70,15 @@ def main():
     print(f"installing the {versions} packages into {venv.name} ...", flush=True)
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     chosen = {"pinned": ["-c", "constraints.txt"], "oldest": oldest(), "newest": []}[versions]
-    if subprocess.run([*pip, *chosen, "-e", ".[view,cad,test]"], cwd=ROOT).returncode:
+    if run([*pip, *chosen, "-e", ".[view,cad,test]"]):
         return "the packages could not be installed: see pip's message above"
     (venv / "ready").touch()
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        print("\nsetup: stopped, run it again to go on", file=sys.stderr)
+        sys.exit(130)

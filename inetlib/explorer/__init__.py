@@ -7,7 +7,13 @@ page, and need the packages of the extra `view`.
 Paper: Sec. 3-6 (explorer; beyond the paper).
 """
 
-from .notebook import person as person
-from .notebook import show as show
-from .notebook import show_net as show_net
-from .notebook import still as still
+__all__ = ["person", "show", "show_net", "still"]
+
+
+def __getattr__(name):
+    """These functions are loaded when they are first used, for `python -m inetlib.explorer`."""
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from . import notebook
+
+    return getattr(notebook, name)
