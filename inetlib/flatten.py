@@ -17,13 +17,14 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from . import adjacency, linear
+from . import adjacency, linear, ties
 
 ROUNDS = 100  # of the inverse iteration, at most; five are usual
-STILL = 1e-9  # a change of the map, of its size, that ends the iteration
+STILL = 1e-12  # a change of the map, of its size, that ends the iteration
 BEND = 0.1  # weight of an even boundary, against the conformal energy
 BENDS = 60  # steps towards it, at most
 STRAIGHT = 1e-4  # a change of the map, of its size, that ends them
+ROUND = 1e-3  # of the mean square size: a shape with less of it is as long both ways
 SAMPLES = 20000  # triangles that are looked at for overlaps
 OVERLAP = 1e-3  # the part of them that may
 
@@ -49,8 +50,9 @@ class Flat(NamedTuple):
 def flatten(V, F, loops, boundary="even"):
     """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
 
-    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk, and
-    runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
+    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk (where
+    there is none: from the boundary vertex farthest from the middle to the one farthest from
+    it, the first ones of equals), and runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
     map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
     overlaps itself, too.
 
@@ -60,11 +62,12 @@ def flatten(V, F, loops, boundary="even"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
     if len(loops) == 1:
         faces, origin, period = F, np.arange(len(V)), None
-        z, energy = _lscm(V, F, loops[0])
-        z = _disk(z, energy, loops[0])
+        pins = _pins(V, loops[0])
+        z, energy = _lscm(V, F, pins)
+        z = _disk(z, energy, loops[0], pins)
     else:
         faces, origin, bank = _cut(F, _path(V, F, loops))
-        energy = _lscm(V[origin], faces, np.flatnonzero(bank))[1]  # any pins: no map is wanted
+        energy = _lscm(V[origin], faces, np.flatnonzero(bank)[:2])[1]  # any pins: no map wanted
         z, period = _ring(energy, loops, origin, bank, len(V)), 1.0 + 0j
     flat = _judged(V, F, z, faces, origin, period)
     if boundary == "even":
@@ -80,7 +83,8 @@ def flatten(V, F, loops, boundary="even"):
     return flat
 
 
-def _disk(z, energy, loop):
+def _disk(z, energy, loop, pins):
+    """The plain map of a disk, turned so that the second pin lies to the right of the first."""
     count = len(z)
     matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
     inverse = linear.factor(matrix)
@@ -89,7 +93,8 @@ def _disk(z, energy, loop):
         load = np.zeros(count, dtype=complex)
         load[loop] = z[loop]
         x = inverse(np.concatenate([load.real, load.imag]))
-        before, z = z, _unit_rim(x[:count] + 1j * x[count:], loop)
+        x = _unit_rim(x[:count] + 1j * x[count:], loop)
+        before, z = z, x * np.exp(-1j * np.angle(x[pins[1]] - x[pins[0]]))
         if np.abs(z - before).max() < STILL * np.abs(z).max():
             break
     return z
@@ -102,15 +107,23 @@ def _twice_axis(z, F):
     a, b, c = z[F].T - np.average((a + b + c) / 3, weights=area)
     moment = np.average(a * a + b * b + c * c + a * b + b * c + c * a, weights=area)
     size = np.average(np.abs(a) ** 2, weights=area)
-    return np.angle(moment) if abs(moment) > 1e-6 * size else 0.0
+    if abs(moment) < ROUND * size:
+        return 0.0
+    aside = 1e-3  # so that a direction at right angles to the pins is no tie between +pi and -pi
+    return np.angle(moment * np.exp(1j * aside)) - aside
 
 
-def _lscm(V, F, loop):
+def _pins(V, loop):
+    """Two boundary vertices far apart, of equals the first ones."""
+    first = loop[ties.first_largest(np.linalg.norm(V[loop] - V[loop].mean(axis=0), axis=1))]
+    second = loop[ties.first_largest(np.linalg.norm(V[loop] - V[first], axis=1))]
+    return np.array([first, second])
+
+
+def _lscm(V, F, pins):
     """(z, energy): libigl's least squares conformal map and the matrix of its energy."""
-    first = loop[np.argmax(np.linalg.norm(V[loop] - V[loop].mean(axis=0), axis=1))]
-    second = loop[np.argmax(np.linalg.norm(V[loop] - V[first], axis=1))]
     ends = np.array([[0.0, 0.0], [1.0, 0.0]])
-    uv, energy = igl.lscm(V, F, np.array([first, second]), ends)
+    uv, energy = igl.lscm(V, F, pins, ends)
     return uv[:, 0] + 1j * uv[:, 1], csr_array(energy)
 
 
@@ -141,18 +154,23 @@ def _ring(energy, loops, origin, bank, count):
 
 
 def _path(V, F, loops):
-    """The vertices of a shortest path along edges from the second loop to the first."""
+    """The vertices of a shortest path along edges from the second loop to the first.
+
+    Of equally short ones that with the first end, then with the lowest vertex numbers.
+    """
     edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     length = np.linalg.norm(V[edges[:, 0]] - V[edges[:, 1]], axis=1)
     ends = np.sort(edges, axis=1)
     ends, index = np.unique(ends, axis=0, return_index=True)
     graph = coo_array((length[index], tuple(ends.T)), shape=(len(V), len(V))).tocsr()
-    distance, parent, _ = dijkstra(
-        graph, directed=False, indices=loops[1], min_only=True, return_predecessors=True
-    )
-    path = [int(loops[0][np.argmin(distance[loops[0]])])]
-    while parent[path[-1]] >= 0:
-        path.append(int(parent[path[-1]]))
+    graph = graph + graph.T
+    distance = dijkstra(graph, indices=loops[1], min_only=True)
+    path = [int(loops[0][ties.first_smallest(distance[loops[0]])])]
+    while distance[path[-1]] > 0:
+        row = slice(*graph.indptr[path[-1] : path[-1] + 2])
+        near = graph.indices[row]
+        on_way = ties.at_most(distance[near] + graph.data[row], distance[path[-1]])
+        path.append(int(near[on_way & (distance[near] < distance[path[-1]])].min()))
     return np.array(path[::-1])
 
 
@@ -210,6 +228,7 @@ def _even(V, loops, flat, energy):
         force = difference.T @ (weight * (target - jump))
         x = solve(np.concatenate([force.real, force.imag]) - still)
         before, z = z, x[:count] + 1j * x[count:]
+        z = z - z.mean()  # nothing else fixes the place
         if np.abs(z - before - (z - before).mean()).max() < STRAIGHT * np.ptp(z.real):
             break
     return z[flat.origin] + banks
