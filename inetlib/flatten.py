@@ -50,11 +50,11 @@ class Flat(NamedTuple):
 def flatten(V, F, loops, boundary="even"):
     """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
 
-    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk (where
-    there is none: from the boundary vertex farthest from the middle to the one farthest from
-    it, the first ones of equals), and runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
-    map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
-    overlaps itself, too.
+    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk; where
+    there is none, that of the plain map from the boundary vertex farthest from the middle to
+    the one farthest from it, the first ones of equals.  It runs around the hole of a ring.
+    boundary: "even" or "plain", see above; where the even map would overlap itself or flip
+    triangles, the plain one is taken.  ValueError if that overlaps itself, too.
 
     Paper: Sec. 6.2 (beyond the paper).
     """

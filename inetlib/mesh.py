@@ -238,8 +238,7 @@ def triangles(V, F):
     """The mesh as triangles: (V float64, T (t, 3) int64); a quad is cut along its shorter diagonal.
 
     V: (n, 3); F: quads (f, 4), or triangles (f, 3), which stay; ValueError as in `check_arrays`.
-    Quad k becomes the rows 2 k and 2 k + 1; where the diagonals are equally long, up to 1e-9 of
-    their length, it is cut along v1 v3.
+    Quad k becomes the rows 2 k and 2 k + 1; diagonals of equal length (see `ties`): along v1 v3.
 
     Paper: Sec. 6.3 (reference surfaces).
     """

@@ -21,8 +21,10 @@ def at_most(a, b):
     return a <= b * (1 + TIE)
 
 
-def first_largest(values):
+def first_largest(values, scale=0.0):
     """The index of the first of the largest numbers; values (k,), not negative.
+
+    scale: a size beside which the numbers are rounded, where they may all be zero.
 
     >>> first_largest([1.0, 3.0 - 1e-15, 3.0])
     1
@@ -30,18 +32,18 @@ def first_largest(values):
     Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     values = np.asarray(values)
-    return int(np.argmax(at_most(values.max(), values)))
+    return int(np.argmax(at_most(values.max(), values + TIE * scale)))
 
 
 def first_smallest(values, scale=0.0):
     """The index of the first of the smallest numbers; values (k,), not negative.
 
-    scale: a size beside which the numbers are rounded; without one zero ties with zero only.
+    scale: a size beside which the numbers are rounded, where they may be zero.
 
     Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     values = np.asarray(values)
-    return int(np.argmax(at_most(values, values.min()) | (values <= values.min() + TIE * scale)))
+    return int(np.argmax(at_most(values, values.min() + TIE * scale)))
 
 
 def nearest_whole(x):
