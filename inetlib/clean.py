@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, mesh
+from . import adjacency, mesh, repair
 
 SAME = 1e-12  # of the diagonal: vertices closer than this are one
 FIT = {(1, 0): "a disk", (2, 0): "a ring"}  # (boundary loops, handles)
@@ -75,7 +75,8 @@ def _without_collapsed(V, F, T):
 
     T: the faces as triangles.  Where there are any, all coinciding vertices become one.
     """
-    two = [np.all(V[T[:, k]] == V[T[:, k - 1]], axis=1) for k in range(3)]
+    near = SAME * np.linalg.norm(np.ptp(V, axis=0))
+    two = [np.linalg.norm(V[T[:, k]] - V[T[:, k - 1]], axis=1) <= near for k in range(3)]
     merged = _merged(V, T, check=False) if np.any(two) else None
     if merged is None:
         return F, 0
@@ -122,12 +123,11 @@ def _try(F):
 
 def _merged(V, F, check=True):
     """(F with coinciding vertices made one, their number), or None if there are none."""
-    size = np.linalg.norm(np.ptp(V, axis=0))
-    _, first, index = igl.remove_duplicate_vertices(V, SAME * size)
-    count = len(V) - len(first)
+    first = repair.same_place(V, np.arange(len(V)), SAME)
+    count = len(V) - len(np.unique(first))
     if not count:
         return None
-    F = first[index[F]]
+    F = first[F]
     return adjacency.check_faces(F) if check else F, count
 
 

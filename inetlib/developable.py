@@ -20,6 +20,7 @@ from .mesh import _check_counts
 from .parallelogram import _lib, ratios, rho
 
 KNOTS = 2049  # on a curve, where the edge of regression is looked for
+SLACK = 1e-12  # of the length of a curve: rounding, where the first and last rulings tie
 BEHIND = "lies behind the edge of regression: y psi' < sin(psi)^2 fails on the way from (x, 0)"
 BEYOND = "lies beyond the last ruling of the curve: take a longer curve"
 DIFFERENCES = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])  # of eighth order, central
@@ -167,14 +168,15 @@ def _feet(curve, x, y):
     start = curve.parameter(x)
     knots = np.linspace(curve.start, curve.stop, KNOTS)
     s, (cot, rate, *_) = curve.integral(knots), darboux(curve, knots)
-    first = y * darboux(curve, start)[0]
+    first = y * darboux(curve, start)[0]  # 0: the ruling is vertical, up to rounding
+    first = np.where(np.abs(first) < SLACK * curve.length, 0, first)
     way = -np.sign(first).astype(int)
     at = np.searchsorted(s, x, side="right") - (way < 0)
     walking, ended, turned = way != 0, np.zeros(x.shape, bool), np.zeros(x.shape, bool)
     while walking.any():
         ended = ended | (walking & ((at < 0) | (at >= KNOTS)))
         k = np.clip(at, 0, KNOTS - 1)
-        walking = walking & ~ended & ((s[k] + y * cot[k] - x) * first > 0)
+        walking = walking & ~ended & ((s[k] + y * cot[k] - x) * -way > SLACK * curve.length)
         turned = turned | (walking & ((cot[k] + (x - s[k]) * rate[k]) * cot[k] <= 0))
         walking = walking & ~turned
         at = at + way * walking

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from . import adjacency, linear
+from . import adjacency, linear, ties
 
 ROUNDS = 100  # of the inverse iteration, at most; five are usual
 STILL = 1e-9  # a change of the map, of its size, that ends the iteration
@@ -26,7 +26,6 @@ BENDS = 60  # steps towards it, at most
 STRAIGHT = 1e-4  # a change of the map, of its size, that ends them
 SAMPLES = 20000  # triangles that are looked at for overlaps
 OVERLAP = 1e-3  # the part of them that may
-TIE = 1e-9  # lengths as close as this, relatively, are equal: else the last bit would choose
 ROUND = 1e-3  # a surface without a longest direction: its moment, of its size, is less
 
 
@@ -120,13 +119,8 @@ def _axis(z, F, ends):
 
 def _ends(V, loop):
     """Two vertices of the loop far from each other, the first ones of those that are farthest."""
-    first = _farthest(V, loop, V[loop].mean(axis=0))
-    return first, _farthest(V, loop, V[first])
-
-
-def _farthest(V, loop, point):
-    away = np.linalg.norm(V[loop] - point, axis=1)
-    return loop[np.argmax(away >= (1 - TIE) * away.max())]
+    first = loop[ties.first_largest(np.linalg.norm(V[loop] - V[loop].mean(axis=0), axis=1))]
+    return first, loop[ties.first_largest(np.linalg.norm(V[loop] - V[first], axis=1))]
 
 
 def _lscm(V, F, ends):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import root
 
-from . import mesh, surfaces
+from . import mesh, surfaces, ties
 from .mesh import Families
 from .parallelogram import _require_angle, _require_positive, from_rho, ratios
 from .rings import NoRow, check_size, exact_ring, march, paper_ring, smooth_rings
@@ -208,9 +208,10 @@ def closings(major, minor, theta, theta0, limit=96, count=10):
     """The closed torus webs nearest to (theta, theta0): a list of `Closing`, nearest first.
 
     major > minor > 0: the radii; m and n go up to `limit`; at most `count` are listed, nearest
-    by the larger deviation of the two angles.  The smooth web with m quads around and n rows
-    closes with a shift of k quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where
-    W = 2 pi minor / sqrt(major^2 - minor^2) is the period of the Mercator coordinate.
+    by the larger deviation of the two angles, of equals that with the smaller m.  The smooth
+    web with m quads around and n rows closes with a shift of k quads exactly when X_v / X_u =
+    (k + i m W / (2 pi)) / n, where W = 2 pi minor / sqrt(major^2 - minor^2) is the period of
+    the Mercator coordinate.
 
     Paper: Sec. 5.3 (closed webs, beyond the paper: B4).
     """
@@ -219,10 +220,10 @@ def closings(major, minor, theta, theta0, limit=96, count=10):
     limit, count = _whole("limit", limit, 3), _whole("count", count, 1)
     rho = np.exp(1j * theta0) / ratios(theta, theta0)[1]
     m, n = np.mgrid[3 : limit + 1, 3 : limit + 1].reshape(2, -1)
-    shift = np.round(n * rho.real).astype(int)
+    shift = ties.nearest_whole(n * rho.real)
     shape = from_rho((shift + 1j * m * wide) / n)
     off = np.maximum(abs(shape.theta - theta), abs(shape.theta0 - theta0))
-    best = np.lexsort([m, off.round(12)])[:count]
+    best = np.lexsort([m, ties.ranks(off, 1e-12)])[:count]
     table = (column[best].tolist() for column in (m, n, shift, shape.theta, shape.theta0))
     return [Closing(*row) for row in zip(*table, strict=True)]
 

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import ties
 from .adjacency import (
     boundary_loops,
     chains,
@@ -30,8 +31,6 @@ from .adjacency import (
     two_colour,
 )
 from .adjacency import face_neighbours as face_neighbours  # boundary_loops, twins: public here too
-
-TIE = 1e-9  # lengths as close as this, relatively, are equal
 
 
 class Checkerboard(NamedTuple):
@@ -239,8 +238,7 @@ def triangles(V, F):
     """The mesh as triangles: (V float64, T (t, 3) int64); a quad is cut along its shorter diagonal.
 
     V: (n, 3); F: quads (f, 4), or triangles (f, 3), which stay; ValueError as in `check_arrays`.
-    Quad k becomes the rows 2 k and 2 k + 1.  Diagonals of equal length, up to a relative `TIE`,
-    are cut along v1 v3: which is shorter by its last digits differs from machine to machine.
+    Quad k becomes the rows 2 k and 2 k + 1; diagonals of equal length (see `ties`): along v1 v3.
 
     Paper: Sec. 6.3 (reference surfaces).
     """
@@ -249,7 +247,7 @@ def triangles(V, F):
     if F.shape[1] == 3:
         return V, F
     d1, d2 = (np.linalg.norm(V[F[:, k + 2]] - V[F[:, k]], axis=1) for k in (0, 1))
-    corners = np.where((d1 <= (1 + TIE) * d2)[:, None], [0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3])
+    corners = np.where(ties.at_most(d1, d2)[:, None], [0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3])
     return V, np.take_along_axis(F, corners, axis=1).reshape(-1, 3)
 
 

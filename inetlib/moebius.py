@@ -12,6 +12,7 @@ Paper: Sec. 3.3 (remark), Sec. 5.2.
 
 import numpy as np
 
+from . import ties
 from .parallelogram import _require_positive
 from .surfaces import Surface
 
@@ -140,7 +141,8 @@ def away_from(V, clearance=0.2):
     axes = np.eye(3)[::-1]
     steps = np.arange(1, 12 + 10 * clearance) / 10  # the last step is far enough for any net
     far = (middle + t * diagonal * axis for t in steps for axis in (*axes, *-axes))
-    return next(c for c in far if np.linalg.norm(V - c, axis=1).min() >= clearance * diagonal)
+    away = clearance * diagonal
+    return next(c for c in far if ties.at_most(away, np.linalg.norm(V - c, axis=1).min()))
 
 
 def image(M, surface):

@@ -5,7 +5,7 @@ Paper: Sec. 3.3 (beyond the paper: B7).
 
 import numpy as np
 
-from . import adjacency
+from . import adjacency, ties
 
 SAMPLES = 1000  # of an outline given as a function
 
@@ -109,22 +109,32 @@ def _is_pair(part):
 def closest(z, outline):
     """The points of a closed polyline closest to z, and its unit tangents there: complex (k,).
 
-    At a corner the tangent is perpendicular to the way from the closest point to z.
+    At a corner the tangent is perpendicular to the way from the closest point to z.  Of points
+    equally close the one on the first side is taken.
 
     Paper: Sec. 3.3 (beyond the paper: B7).
     """
     step = np.roll(outline, -1) - outline
     feet, tangents = np.empty((2, len(z)), dtype=complex)
+    size = np.abs(outline - outline[0]).max()
     for k, point in enumerate(z):
         part = np.clip(((point - outline) / step).real, 0, 1)
         found = outline + part * step
-        near = np.argmin(np.abs(found - point))
-        off = point - found[near]
-        along = (
-            1j * off if abs(off) > 1e-9 * abs(step[near]) and part[near] in (0, 1) else step[near]
-        )
+        near = _nearest(found, np.abs(found - point), size)
+        off, corner = point - found[near], part[near] in (0, 1)
+        if corner and abs(off) > ties.TIE * abs(step[near]):
+            along = 1j * off
+        else:  # at a corner itself that of the side that leaves it
+            along = step[(near + (part[near] > 1 - ties.TIE)) % len(step)]
         feet[k], tangents[k] = found[near], along / abs(along)
     return feet, tangents
+
+
+def _nearest(feet, away, size):
+    """The index of the nearest foot; of feet apart that are equally near, that of the first."""
+    first = ties.first_smallest(away, size)
+    around = np.abs(feet - feet[first]) < 1e-4 * size  # on the same side, or the next one
+    return np.argmin(np.where(around, away, np.inf))
 
 
 def spread(outline, count):

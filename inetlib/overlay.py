@@ -13,9 +13,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, parallelogram
+from . import adjacency, parallelogram, ties
 
-INSIDE = 1e-9  # of the size of the domain: points this close to it are inside
+INSIDE = 1e-7  # of the size of the domain: points this close to it are inside, far above rounding
 TRIES = 30  # sizes that are tried for a wanted number of quads
 CLOSE = 0.004  # of the wanted number: close enough
 MOST = 20_000_000  # grid points that are tried
@@ -104,8 +104,8 @@ def _fit(domain, u, rho):
     if period is None:
         return complex(u), complex(u * rho), (0, 0)
     ratio = period / u
-    along_v = round(ratio.imag / rho.imag)
-    along_u = round(ratio.real - along_v * rho.real)
+    along_v = int(ties.nearest_whole(ratio.imag / rho.imag))
+    along_u = int(ties.nearest_whole(ratio.real - along_v * rho.real))
     along_u = along_u if along_u or along_v else 1
     u = complex(period / (along_u + along_v * rho))
     return u, u * rho, (along_u, along_v)

@@ -14,13 +14,12 @@ import numpy as np
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.path import Path
 
-from . import mesh
+from . import mesh, ties
 
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 STYLE = files("inetlib") / "inet.mplstyle"
-TIE = 1e-9  # of the range of some numbers: closer ones count as the same on every machine
-ROUNDING = 1e-12  # of their size, the same
+ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on every machine
 
 
 def use_style():
@@ -210,17 +209,15 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
 def order(keys):
     """The places of the keys from the smallest to the largest; ties keep their order.
 
-    keys: (k,) numbers.  Neighbours closer than `TIE` times the range of all, or by the rounding
+    keys: (k,) numbers.  Neighbours closer than `ties.TIE` times the range of all, or by the rounding
     of the largest, are ties: which of two computed numbers is larger by its last digits
     differs from machine to machine.
 
     Paper: Figs. 1-13 (drawing).
     """
     keys = np.asarray(keys, dtype=float)
-    rising = np.argsort(keys, kind="stable")
-    apart = np.diff(keys[rising]) > TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
-    level = np.concatenate([[0], np.cumsum(apart)])
-    return rising[np.lexsort((rising, level))]
+    close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
+    return np.argsort(ties.ranks(keys, close), kind="stable")
 
 
 def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from . import nearest
+from . import nearest, ties
 from .adjacency import opposites
 from .mesh import triangles
 
@@ -53,8 +53,8 @@ def mesh(V, F):
     angles of the faces), so that they have no jump at an edge, and are those of the face
     where that degenerates.  Along the boundary e1 is interpolated in the same way, with the
     mesh on its left; at corners, where the boundary turns by more than 30 degrees, it is the
-    direction of the segment hit (at the corner itself, of either).  A closed surface has no
-    boundary: asking is a ValueError.
+    direction of the segment hit (at the corner itself, of the one that leaves it).  A closed
+    surface has no boundary: asking is a ValueError.
 
     ValueError for faces that are no oriented manifold, and for triangles without area.
 
@@ -131,13 +131,18 @@ def _boundary(V, F, half, smooth, face):
     along = V[edges[:, 1]] - V[edges[:, 0]]
     length = np.linalg.norm(along, axis=1)
     along /= length[:, None]
-    tangents = _vertex_tangents(edges, along)
+    after = np.empty(len(V), dtype=np.int64)
+    after[edges[:, 0]] = np.arange(len(edges))
+    after = after[edges[:, 1]]
+    tangents = _vertex_tangents(along, after)
     tree = igl.AABB()
     tree.init(V, edges)
 
     def boundary(points):
         _, hit, feet = tree.squared_distance(V, edges, _points(points))
         t = np.einsum("ij,ij->i", feet - V[edges[hit, 0]], along[hit]) / length[hit]
+        end = t > 1 - ties.TIE  # as near to the next segment
+        hit, t = np.where(end, after[hit], hit), np.where(end, 0, t)
         weights = np.clip(np.stack([1 - t, t], axis=1), 0, 1)[..., None]
         e1 = _unit_or(np.sum(weights * tangents[hit], axis=1), along[hit])
         plain = _across(owner[hit], e1)  # never short: e1 is close to the edge
@@ -153,13 +158,14 @@ def _across(vectors, e1):
     return vectors - np.sum(vectors * e1, axis=1, keepdims=True) * e1
 
 
-def _vertex_tangents(edges, along):
-    """Tangents (e, 2, 3) at both ends of the boundary edges, the edge's own at corners."""
-    before = np.empty(edges.max() + 1, dtype=np.int64)
-    after = before.copy()
-    after[edges[:, 0]] = before[edges[:, 1]] = np.arange(len(edges))
-    one, two = along[before[edges]], along[after[edges]]
-    smooth = np.einsum("ecx,ecx->ec", one, two) > np.cos(CORNER)
+def _vertex_tangents(along, after):
+    """Tangents (e, 2, 3) at both ends of the boundary edges, the edge's own at corners.
+
+    after (e,): the edge that begins where each one ends.
+    """
+    before, here = np.argsort(after), np.arange(len(after))
+    one, two = along[np.stack([before, here], axis=1)], along[np.stack([here, after], axis=1)]
+    smooth = np.einsum("ecx,ecx->ec", one, two) > np.cos(CORNER) - 1e-9  # 30 degrees are no more
     mean = one + two
     mean /= np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300)
     return np.where(smooth[..., None], mean, along[:, None])

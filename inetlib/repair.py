@@ -9,9 +9,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from . import mesh
+from . import mesh, ties
 from .adjacency import pairs, two_colour
 
+FLAT = 1e-12  # of the bounding box: an area this small is none
 NEAR = 1e-6  # of the bounding box: vertices closer than this are meant to be one
 
 
@@ -68,7 +69,7 @@ def _manifold(V, T, tolerance):
     """Triangles oriented alike, and how many vertices were merged, triangles dropped, turned."""
     dropped = merged = 0
     if tolerance is not None:
-        same = _same_place(V, T, tolerance)
+        same = same_place(V, T, tolerance)
         merged = len(np.unique(T)) - len(np.unique(same[T]))
         T, dropped = _extended(same[T])
         if tolerance and dropped:
@@ -103,8 +104,13 @@ def _extended(T):
     return T[kept], len(T) - len(kept)
 
 
-def _same_place(V, T, tolerance):
-    """For each vertex the first one at its place, up to tolerance x the bounding box."""
+def same_place(V, T, tolerance):
+    """For each vertex the first one at its place, up to tolerance x the bounding box: (n,).
+
+    V: (n, 3); T: the vertices that count, integers of any shape.
+
+    Paper: Sec. 6 (files; beyond the paper).
+    """
     used = np.unique(T)
     radius = tolerance * np.linalg.norm(np.ptp(V[used], axis=0))
     if radius > 0:
@@ -186,7 +192,10 @@ def _once(face):
 
 
 def _ears(P, number):
-    """Triangles (k - 2, 3) of one polygon with corners P (k, 3): the shortest good cut first."""
+    """Triangles (k - 2, 3) of one polygon with corners P (k, 3): the shortest good cut first.
+
+    Of equally short ones the first; three corners on a line are no ear.
+    """
     normal = np.cross(P - P[0], np.roll(P, -1, axis=0) - P[0]).sum(axis=0)
     normal /= np.linalg.norm(normal) or 1.0
     left, found = list(range(len(P))), []
@@ -199,7 +208,7 @@ def _ears(P, number):
                 cuts.append((float(np.linalg.norm(P[ear[2]] - P[ear[0]])), k, ear))
         if not cuts:
             raise ValueError(f"face {number} has no area, or sides that cross")
-        _, k, ear = min(cuts)
+        _, k, ear = cuts[ties.first_smallest([length for length, *_ in cuts])]
         found.append(ear)
         del left[k]
     return np.array([*found, left])
@@ -208,7 +217,8 @@ def _ears(P, number):
 def _is_ear(P, normal, ear, others):
     """Whether the triangle is turned like the polygon, with none of the other corners in it."""
     sides = [(P[ear[k]], P[ear[(k + 1) % 3]]) for k in range(3)]
-    if not np.cross(sides[0][1] - sides[0][0], sides[1][1] - sides[1][0]) @ normal > 0:
+    little = FLAT * np.sum(np.ptp(P, axis=0) ** 2)
+    if not np.cross(sides[0][1] - sides[0][0], sides[1][1] - sides[1][0]) @ normal > little:
         return False
-    inside = [np.cross(b - a, P[others] - a) @ normal >= 0 for a, b in sides]
+    inside = [np.cross(b - a, P[others] - a) @ normal >= -little for a, b in sides]
     return not np.all(inside, axis=0).any()

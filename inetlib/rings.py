@@ -15,8 +15,10 @@ Paper: Eq. (16), Alg. 1, App. A.3.
 import numpy as np
 from scipy.optimize import brentq
 
-from . import surfaces
+from . import surfaces, ties
 from .parallelogram import ratios
+
+FITS = 1e-12  # a last row that is too high by this part of it still fits: the rest is rounding
 
 
 class NoRow(ValueError):
@@ -36,6 +38,9 @@ def march(profile, following, n):
     """
     t, turn, why = [profile.start], [0.0], "as many as asked for"
     while n is None or len(t) <= n:
+        if profile.stop - t[-1] < FITS * (profile.stop - profile.start):
+            why = meridian_ends(profile)
+            break
         try:
             after, by = following(t[-1])
         except NoRow as reason:
@@ -63,7 +68,7 @@ def smooth_rings(profile, theta, theta0, m, n):
     """
     w_of_t, t_of_w = surfaces.mercator(profile)
     step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
-    fit = int(w_of_t(profile.stop) / step * (1 + 1e-12))
+    fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
     if fit < 1:
         raise NoRow(meridian_ends(profile))
     rows = fit if n is None else min(n, fit)
@@ -173,18 +178,22 @@ def exact_ring(profile, theta, theta0, m):
     Paper: Alg. 1, App. A.3 (straight distances; beyond the paper: B5).
     """
     mu, psi = ratios(theta, theta0)[1], _psi(theta, theta0, m)
-    smooth = 2 * np.pi / m * np.sin(theta0) / mu
+    smooth, half = 2 * np.pi / m * np.sin(theta0) / mu, np.pi / m
     little = (profile.stop - profile.start) * 1e-5
 
     def following(t0):
         ends = np.array([t0, min(t0 + little, profile.stop)])
         moved = np.hypot(*(np.ptp(f(ends)) for f in (profile.radius, profile.height)))
         step = smooth * profile.radius(t0) * np.ptp(ends) / max(moved, 1e-300)
-        t = _first_root(
-            lambda t: _exact_residual(profile, mu, psi, m, t0, t), t0, step, profile.stop
-        )
+
+        def gap(t):
+            return _exact_residual(profile, mu, psi, m, t0, t)
+
+        t = _first_root(gap, t0, step, profile.stop)
         if t is None:
-            raise NoRow(meridian_ends(profile))
+            if not gap(profile.stop) < FITS * (2 * profile.radius(t0) * np.sin(half)) ** 2:
+                raise NoRow(meridian_ends(profile))
+            t = profile.stop
         if np.isnan(t):
             raise NoRow(f"a further one does not fit: no such quad stands on t = {t0:.6g}")
         return t, float(_exact_turn(profile, psi, t0, t))
@@ -261,9 +270,12 @@ def paper_ring(profile, theta, theta0, m, equation):
             return _paper_residual(profile, w_of_t, theta, theta0, m, t0, t, equation)
 
         # search is in units of the smooth row with |m13| = |m24|; the row wanted is 1 / mu
-        low, high = (t_of_w(min(w_of_t(t0) + x * unit, end)) for x in search)
+        low, high = (w_of_t(t0) + x * unit for x in search)
+        ended = high >= end * (1 - FITS)
+        low, high = t_of_w(min(low, end)), profile.stop if ended else t_of_w(high)
+        if ended and abs(gap(high)) < FITS:
+            return high, float((end - w_of_t(t0)) / np.tan(theta0))
         if not gap(low) * gap(high) < 0:
-            ended = high >= profile.stop
             none = f'the equation "{equation}" has no root where the next row should be'
             raise NoRow(meridian_ends(profile) if ended else none)
         t = _root(gap, low, high)

@@ -6,7 +6,7 @@ A net here is one of `loxodrome.web`: it has V, Q, families and rows.
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from .. import measure, mesh, plot
+from .. import measure, mesh, plot, ties
 
 DARK = to_rgb("#6f8fbf")
 SLOTS = {"u": [(1, 2), (0, 3)], "v": [(1, 0), (2, 3)], "d1": [(0, 2)], "d2": [(1, 3)]}
@@ -54,7 +54,9 @@ def paint(ax, view, net, outside, fill, lines):
     fill = np.concatenate([plot.shade(net.V, back, "#b9c0c9", depth=0.3), fill])
     rims = [net.V[np.append(loop, loop[0])] for loop in mesh.boundary_loops(net.Q)]
     if rims:  # the highest is seen all around, from above
-        lines = [*lines, (max(rims, key=lambda rim: rim[:, 2].mean()), plot.COLOURS["u"], 0.8)]
+        height = np.array([rim[:, 2].mean() for rim in rims]) - net.V[:, 2].min()
+        highest = rims[ties.first_largest(height, np.ptp(net.V[:, 2]))]
+        lines = [*lines, (highest, plot.COLOURS["u"], 0.8)]
     plot.scene(ax, view, points, every, fill, lines)
 
 
@@ -64,7 +66,8 @@ def facing(view, V, Q):
     Paper: Sec. 5.3 (drawing).
     """
     a, b = (view(x)[0] for x in measure.vectors(V, Q)[:2])
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > 0
+    size = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > ties.TIE * size  # edge on: not shown
 
 
 def lines(V, Q, families, width):
