@@ -209,9 +209,9 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
 def order(keys):
     """The places of the keys from the smallest to the largest; ties keep their order.
 
-    keys: (k,) numbers.  Neighbours closer than `ties.TIE` times the range of all, or by the rounding
-    of the largest, are ties: which of two computed numbers is larger by its last digits
-    differs from machine to machine.
+    keys: (k,) numbers.  Neighbours closer than `ties.TIE` times the range of all, or by the
+    rounding of the largest, are ties: which of two computed numbers is larger by its last
+    digits differs from machine to machine.
 
     Paper: Figs. 1-13 (drawing).
     """
