@@ -249,6 +249,30 @@ def test_corners_of_more_than_30_degrees_keep_the_direction_of_the_segment_hit(d
     np.testing.assert_allclose(e1, [[np.cos(half), np.sin(half), 0]], atol=1e-5)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_at_a_corner_the_boundary_leaves_whatever_the_rounding(seed):
+    R = reference.mesh(*grid(3, 3))
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    noise = 1e-13 * np.random.default_rng(seed).standard_normal(corners.shape)
+    for away in (0, 0.1):
+        outside = corners + away * (corners - [0.5, 0.5, 0])
+        feet, e1, *_ = R.boundary(outside + noise)
+        np.testing.assert_allclose(feet, corners, atol=1e-12)
+        np.testing.assert_allclose(e1, [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], atol=1e-9)
+
+
+def test_a_turn_of_30_degrees_up_to_rounding_is_no_corner():
+    angle = TAU * np.arange(12) / 12
+    rim = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    k = np.arange(12)
+    fan = np.stack([0 * k, k + 1, np.roll(k, -1) + 1], axis=1)
+    for turn in range(8):
+        V = np.concatenate([np.zeros((1, 3)), Rotation.from_rotvec([0, 0, turn]).apply(rim)])
+        feet, e1, *_ = reference.mesh(V, fan).boundary(1.1 * V[1:])
+        np.testing.assert_allclose(feet, V[1:], atol=1e-14)
+        np.testing.assert_allclose(dot(e1, feet), 0, atol=1e-12)
+
+
 def test_holes_are_boundary_too():
     V, Q = grid(5, 5)
     R = reference.mesh(V, np.delete(Q, 12, axis=0))  # the middle one of 5 x 5
