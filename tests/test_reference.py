@@ -273,6 +273,25 @@ def test_a_turn_of_30_degrees_up_to_rounding_is_no_corner():
         np.testing.assert_allclose(dot(e1, feet), 0, atol=1e-12)
 
 
+def test_feet_of_points_over_a_valley_do_not_hang_on_rounding():
+    V, Q = grid(6, 6, lambda x, y: np.abs(x - 0.5) + np.abs(y - 0.5))
+    s = np.linspace(0.05, 0.95, 10)
+    points = np.concatenate([np.stack([0.5 + 0 * s, s, s + 1], 1), np.stack([s, s, s + 1.2], 1)])
+    ends = np.stack([s, s, 0 * s], axis=1)  # inside, as near to two sides of the boundary
+    known = None
+    for seed in range(4):
+        noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal((30, 3))
+        R = reference.mesh(V * (1 + 1e-14 * seed), Q)
+        flat = reference.mesh(*grid(6, 6))
+        found = *R.closest(points * noise[:20]), *flat.boundary(ends * noise[20:])[:2]
+        known = known or found
+        for one, two in zip(known, found, strict=True):
+            np.testing.assert_allclose(one, two, atol=1e-11)
+    far = norm(points - known[0])[:, 0]
+    assert (far <= norm(points[:, None] - V).min(axis=(1, 2)) + 1e-12).all()
+    np.testing.assert_allclose(norm(ends - known[2])[:, 0], np.minimum(s, 1 - s), atol=1e-11)
+
+
 def test_holes_are_boundary_too():
     V, Q = grid(5, 5)
     R = reference.mesh(V, np.delete(Q, 12, axis=0))  # the middle one of 5 x 5
