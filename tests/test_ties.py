@@ -51,7 +51,7 @@ def test_the_next_multiple_is_the_number_itself_up_to_rounding():
 def test_faces_seen_edge_on_do_not_show(seed):
     angle = np.pi / 4 * np.arange(8) + np.pi / 8  # four of the eight sides along an axis
     ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    V = noisy(seed, np.concatenate([ring, ring + [0, 0, 1]]))
+    V = noisy(seed, np.concatenate([ring, ring + np.array([0, 0, 1])]))
     k = np.arange(8)
     Q = np.stack([k + 8, k, (k + 1) % 8, (k + 1) % 8 + 8], axis=1)
     shown = revolution.facing(plot.camera(0.0, 0.3), V, Q)
