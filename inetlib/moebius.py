@@ -141,8 +141,8 @@ def away_from(V, clearance=0.2):
     axes = np.eye(3)[::-1]
     steps = np.arange(1, 12 + 10 * clearance) / 10  # the last step is far enough for any net
     far = (middle + t * diagonal * axis for t in steps for axis in (*axes, *-axes))
-    away = clearance * diagonal
-    return next(c for c in far if ties.at_most(away, np.linalg.norm(V - c, axis=1).min()))
+    away = clearance * diagonal * (1 + ties.TIE)  # a distance that ties is too small
+    return next(c for c in far if np.linalg.norm(V - c, axis=1).min() >= away)
 
 
 def image(M, surface):

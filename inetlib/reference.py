@@ -17,6 +17,8 @@ from .adjacency import opposites
 from .mesh import triangles
 
 CORNER = np.radians(30)  # a boundary that turns by more at a vertex has a corner there
+ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])  # of the diagonal: no symmetry of any surface
+SAME = 1e-11  # of the diagonal: distances that differ by less are equal
 
 
 class Reference(NamedTuple):
@@ -67,18 +69,17 @@ def mesh(V, F):
     _refuse_fans(F)
     smooth = igl.per_vertex_normals(V, F, igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE)
     smooth = np.nan_to_num(smooth)  # unused vertices, and normals that cancel
+    diagonal = float(np.linalg.norm(np.ptp(V[np.unique(F)], axis=0)))
     tree = igl.AABB()
     tree.init(V, F)
 
     def closest(points):
-        _, hit, feet = tree.squared_distance(V, F, _points(points))
-        weights = _barycentric(feet, *np.moveaxis(V[F[hit]], 1, 0))
+        hit, feet = _nearest(tree, V, F, _points(points), diagonal)
+        weights = np.clip(_barycentric(feet, *np.moveaxis(V[F[hit]], 1, 0)), 0, 1)
         normals = np.einsum("kc,kcx->kx", weights, smooth[F[hit]])
         return feet, _unit_or(normals, face[hit])
 
-    used = V[np.unique(F)]
-    diagonal = float(np.linalg.norm(np.ptp(used, axis=0)))
-    rim = _boundary(V, F, open_edges, smooth, face)
+    rim = _boundary(V, F, open_edges, smooth, face, diagonal)
     return Reference(closest, rim, diagonal, V, F, bool(open_edges.size))
 
 
@@ -105,14 +106,46 @@ def _refuse_fans(F):
         raise ValueError(f"the faces at vertex {pinched[0]} form two fans: not a manifold")
 
 
+def _nearest(tree, V, F, points, diagonal):
+    """(k,) the triangle or segment of F nearest to each point, and (k, 3) the foot there.
+
+    Over a valley several are equally near, which of them would hang on rounding: there it is
+    the one that is nearest when the point moves a little ASIDE.
+    """
+    squares, hit, feet = tree.squared_distance(V, F, points)
+    away = np.flatnonzero(squares > (SAME * diagonal) ** 2)
+    if away.size:
+        other = tree.squared_distance(V, F, points[away] + ASIDE * diagonal)[1]
+        away, other = away[other != hit[away]], other[other != hit[away]]
+        feet_there = _feet(points[away], V[F[other]])
+        far = np.linalg.norm(feet_there - points[away], axis=1)
+        tied = far <= np.sqrt(squares[away]) + SAME * diagonal
+        hit[away[tied]], feet[away[tied]] = other[tied], feet_there[tied]
+    return hit, feet
+
+
+def _feet(p, corners):
+    """The closest points (k, 3) of segments (k, 2, 3) or triangles (k, 3, 3) to points p (k, 3)."""
+    a, b = corners, np.roll(corners, -1, axis=1)
+    along = np.einsum("kcx,kcx->kc", p[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=2)
+    feet = a + np.clip(along, 0, 1)[..., None] * (b - a)
+    nearest = np.argmin(np.linalg.norm(feet - p[:, None], axis=2), axis=1)
+    feet = feet[np.arange(len(p)), nearest]
+    if corners.shape[1] == 2:
+        return feet
+    weights = _barycentric(p, *np.moveaxis(corners, 1, 0))
+    inside = (weights >= 0).all(axis=1)[:, None]
+    return np.where(inside, np.einsum("kc,kcx->kx", weights, corners), feet)
+
+
 def _barycentric(p, a, b, c):
-    """Barycentric coordinates (k, 3) of points p of the triangles a, b, c, each (k, 3)."""
+    """Barycentric coordinates (k, 3) of the feet of points p in planes a, b, c, each (k, 3)."""
     u, v, w = b - a, c - a, p - a
     products = ((u, u), (u, v), (v, v), (w, u), (w, v))
     uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", x, y) for x, y in products)
     area = uu * vv - uv * uv
     second, third = (vv * wu - uv * wv) / area, (uu * wv - uv * wu) / area
-    return np.clip(np.stack([1 - second - third, second, third], axis=1), 0, 1)
+    return np.stack([1 - second - third, second, third], axis=1)
 
 
 def _unit_or(vectors, other):
@@ -122,7 +155,7 @@ def _unit_or(vectors, other):
     return np.where(good, vectors / np.where(good, length, 1), other)
 
 
-def _boundary(V, F, half, smooth, face):
+def _boundary(V, F, half, smooth, face, diagonal):
     """The callable `Reference.boundary` for the boundary half-edges `half` of the triangles."""
     if not half.size:
         return _no_boundary("the reference is a closed surface: it has no boundary")
@@ -139,7 +172,7 @@ def _boundary(V, F, half, smooth, face):
     tree.init(V, edges)
 
     def boundary(points):
-        _, hit, feet = tree.squared_distance(V, edges, _points(points))
+        hit, feet = _nearest(tree, V, edges, _points(points), diagonal)
         t = np.einsum("ij,ij->i", feet - V[edges[hit, 0]], along[hit]) / length[hit]
         end = t > 1 - ties.TIE  # as near to the next segment
         hit, t = np.where(end, after[hit], hit), np.where(end, 0, t)

@@ -57,6 +57,17 @@ def nearest_whole(x):
     return np.ceil(np.asarray(x) - 0.5 - TIE).astype(np.int64)
 
 
+def next_multiple(x, step):
+    """The next multiple of a step, which x itself is when it is one up to 1e-9 of the step.
+
+    >>> next_multiple(30 + 1e-12, 5), next_multiple(31, 5)
+    (30.0, 35.0)
+
+    Paper: Sec. 6 (the same result on every machine; beyond the paper).
+    """
+    return float(np.ceil(x / step - TIE) * step)
+
+
 def ranks(values, tolerance):
     """0 for the smallest numbers, 1 for the next ones, ...: int64 (k,).
 

@@ -543,3 +543,105 @@ def test_the_report_in_words():
     words = design.describe(net.report)
     assert words.startswith(f"{net.report.quads} quads, theta = 70, theta0 = 50 degrees")
     assert f"{net.report.winding[0]} steps along u" in words
+
+
+# --- the same on every machine ----------------------------------------------------------------
+
+
+def polygon(sides, rings=6):
+    """A flat disk of triangles with so many straight sides."""
+    corner = np.exp(2j * np.pi * np.arange(sides) / sides)
+    z, F, start = [0j], [], [0, 1]
+    for r in range(1, rings + 1):
+        t = np.arange(r) / r
+        z.extend(r * (corner[:, None] * (1 - t) + np.roll(corner, -1)[:, None] * t).ravel())
+        start.append(len(z))
+        for k in range(sides * r):
+            side, step = divmod(k, r)
+            a, b = start[r] + k, start[r] + (k + 1) % (sides * r)
+            inner = [
+                start[r - 1] + (side * (r - 1) + s) % max(1, sides * (r - 1))
+                for s in (step, step + 1)
+            ]
+            F.append([inner[0], a, b])
+            F.extend([[inner[0], b, inner[1]]] if step < r - 1 else [])
+    return np.stack([np.real(z), np.imag(z), 0 * np.real(z)], axis=1), np.array(F)
+
+
+def annulus():
+    V, Q = sheet(6, 36, lambda u, v: np.stack(_polar(0.4 + 0.6 * u, 2 * np.pi * v)))
+    i, j = np.divmod(Q, 37)
+    return V.reshape(7, 37, 3)[:, :-1].reshape(-1, 3), 36 * i + j % 36
+
+
+def _polar(radius, angle):
+    return radius * np.cos(angle), radius * np.sin(angle), 0 * radius
+
+
+SYMMETRIC = {
+    "shell": lambda: examples.hanging_shell(16),
+    "square": lambda: sheet(12, 12, lambda u, v: (2 * u - 1, 2 * v - 1, 0 * u)),
+    "triangle": lambda: polygon(3),
+    "pentagon": lambda: polygon(5),
+    "hexagon": lambda: polygon(6),
+    "annulus": annulus,
+    "saddle with a hole": lambda: examples.saddle_with_hole(8),
+}
+
+
+def noisy(V, seed):
+    return V * (1 + 1e-13 * np.random.default_rng(seed).standard_normal(V.shape))
+
+
+@pytest.mark.parametrize("name", SYMMETRIC)
+@pytest.mark.parametrize(("pair", "direction"), [((60, 60), 0), ((90, 90), 45), ((90, 60), 90)])
+def test_covers_of_symmetric_surfaces_do_not_hang_on_rounding(name, pair, direction):
+    V, F = SYMMETRIC[name]()
+    options = {"count": 128, "direction": np.radians(direction)}
+    net = cover((V, F), pair, **options)
+    for seed in range(2):
+        other = cover((noisy(V, seed), F), pair, **options)
+        np.testing.assert_array_equal(other.Q, net.Q)
+        size = np.linalg.norm(np.ptp(V, axis=0))
+        np.testing.assert_allclose(other.V, net.V, rtol=0, atol=1e-9 * size)
+        assert other.report.winding == net.report.winding
+
+
+@pytest.mark.parametrize("name", SYMMETRIC)
+@pytest.mark.parametrize("boundary", ["even", "plain"])
+def test_maps_of_symmetric_surfaces_do_not_hang_on_rounding(name, boundary):
+    V, F = SYMMETRIC[name]()
+    known = None
+    for seed in range(4):
+        surface = clean.clean(noisy(V, seed), F)
+        flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
+        known = known or flat
+        np.testing.assert_array_equal(flat.F, known.F)
+        np.testing.assert_array_equal(flat.origin, known.origin)
+        np.testing.assert_allclose(flat.z, known.z, rtol=0, atol=1e-10 * np.abs(known.z).max())
+
+
+@pytest.mark.parametrize("boundary", ["even", "plain"])
+def test_a_square_has_no_longest_direction_and_lies_on_its_first_diagonal(boundary):
+    V, Q = SYMMETRIC["square"]()
+    surface = clean.clean(V, Q)
+    flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
+    corners = [k for k in surface.loops[0] if np.abs(V[k, :2]).min() == 1]
+    along = V[:, :2] @ -V[corners[0], :2] / np.sqrt(2)
+    np.testing.assert_allclose(flat.z.real, along, atol=1e-9)
+
+
+def test_points_on_the_rim_up_to_rounding_are_inside():
+    V, Q = SYMMETRIC["square"]()
+    for seed in range(4):
+        net = cover((noisy(V, seed), Q), (90, 90), size=0.2, direction=np.pi / 4, optimise=False)
+        assert len(net.Q) == 100  # ten by ten, the outer lines lie on the sides
+
+
+def test_duplicate_vertices_are_merged_wherever_they_lie():
+    V, F = examples.wavy_roof(12)
+    soup = V[F].reshape(-1, 3)
+    soup = soup + 1e-13 * np.random.default_rng(3).standard_normal(soup.shape)
+    found = clean.clean(soup, np.arange(F.size).reshape(-1, 3))
+    assert len(found.V) == len(V)
+    assert len(found.loops) == 1

@@ -491,3 +491,18 @@ WRONG = {
 def test_bad_input_is_a_clear_error(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_the_ends_of_a_plane_arc_carry_points_whatever_the_rounding():
+    z = np.add.outer([0.0, 1.1 * 1.3], 1j * np.array([-0.7, -0.3, 0.1, 0.3]))
+    for seed in range(6):
+        axes = np.linalg.qr(np.random.default_rng(seed).standard_normal((3, 3)))[0]
+
+        def arc(t, k=0, axes=axes):
+            turned = np.asarray(t, dtype=float) + k * np.pi / 2
+            return 1.3 * (np.cos(turned)[..., None] * axes[0] + np.sin(turned)[..., None] * axes[1])
+
+        found = developable.rectifying(z, developable.arc_length(arc, 0.0, 1.1))
+        side = np.cross(axes[0], axes[1])
+        wanted = np.stack([arc(t) + z.imag[0][:, None] * side for t in (0.0, 1.1)])
+        np.testing.assert_allclose(found, wanted, atol=1e-9)

@@ -426,6 +426,26 @@ def test_polygons_are_cut_inside(tmp_path):
         repair.triangulate(np.outer(range(5), [1.0, 1, 1]), [[0, 2, 4, 3, 1]])
 
 
+@pytest.mark.parametrize("sides", [5, 6, 8, 12])
+def test_ears_of_equal_length_are_cut_in_order(sides):
+    angle, known = 2 * np.pi * np.arange(sides) / sides, None
+    V = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    for seed in range(4):
+        noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal(V.shape)
+        T = repair.triangulate(V * noise, [list(range(sides))])
+        known = T if known is None else known
+        np.testing.assert_array_equal(T, known)
+
+
+def test_three_corners_on_a_line_are_no_ear():
+    V = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 2, 0], [1, 2, 0], [0, 2, 0.0]])
+    for turn in range(8):
+        c, s = np.cos(turn), np.sin(turn)
+        W = V @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+        a, b, c = np.moveaxis(W[repair.triangulate(W, [[0, 1, 2, 3, 4, 5]])], 1, 0)
+        assert np.linalg.norm(np.cross(b - a, c - a), axis=1).min() > 0.5
+
+
 def test_stl_corners_are_merged(tmp_path):
     T = repair.triangulate(CUBE, SIDES)
     V, F, repaired = io.surface(put(tmp_path, "c.stl", stl(CUBE, T)))

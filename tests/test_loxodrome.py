@@ -447,3 +447,35 @@ def test_bad_tori_are_refused():
         loxodrome.closings(2, 1, 1, 1, limit=2)
     with pytest.raises(ValueError):
         loxodrome.torus_web(2, 1.9, 4, 3, 40)
+
+
+# --- the same on every machine --------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "options", [{}, {"method": "smooth"}, {"method": "paper", "equation": "mu"}]
+)
+def test_a_last_row_that_fits_up_to_rounding_fits(options):
+    def radius(t):
+        return 1 + 0.1 * np.sin(t)
+
+    five = loxodrome.web(
+        surfaces.Profile(radius, lambda t: 2 * t, 0, 3), 1.2, 1.0, 24, 5, **options
+    )
+    for ulps in range(-4, 5):
+        stop = five.t[-1] * (1 + ulps * 2**-52)
+        profile = surfaces.Profile(radius, lambda t: 2 * t, 0, stop)
+        net = loxodrome.web(profile, 1.2, 1.0, 24, **options)
+        assert net.rows == 5
+        assert "the meridian ends" in net.message
+        np.testing.assert_allclose(net.V, five.V, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_closings_that_tie_are_ordered_by_m(seed):
+    noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal(3)
+    for pair in ((90, 60), (60, 90), (90, 90)):
+        known = loxodrome.closings(np.sqrt(2), 1, *np.radians(pair))
+        angles = np.radians(pair) * noise[1:]
+        found = loxodrome.closings(np.sqrt(2) * noise[0], 1, *angles)
+        assert [c[:3] for c in found] == [c[:3] for c in known]

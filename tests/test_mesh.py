@@ -769,3 +769,15 @@ def test_triangles_refuses_other_faces_and_missing_vertices():
         mesh.triangles(positions(1, 1), [[0, 1, 4]])
     with pytest.raises(ValueError, match="face 0 uses a vertex twice"):
         mesh.triangles(positions(1, 1), [[0, 1, 1]])
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_diagonals_equal_up_to_rounding_are_cut_along_v1_v3(seed):
+    angle, noise = 2 * np.pi * np.arange(36) / 36, np.random.default_rng(seed)
+    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    V = np.concatenate([ring, ring * [1, 1, 0] + [0, 0, 0.3]])
+    V *= 1 + 1e-13 * noise.standard_normal(V.shape)
+    k, after = np.arange(36), np.roll(np.arange(36), -1)
+    Q = np.stack([k + 36, k, after, after + 36], axis=1)
+    wanted = np.stack([Q[:, [0, 1, 2]], Q[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
+    np.testing.assert_array_equal(mesh.triangles(V, Q)[1], wanted)

@@ -185,6 +185,15 @@ def test_away_from_leaves_a_horizontal_net_upwards():
     assert centre[2] > 0
 
 
+def test_a_distance_that_ties_with_the_clearance_is_too_small():
+    x, y = np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 5))
+    net = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)  # the middle is a vertex
+    for seed in range(8):
+        noise = np.random.default_rng(seed).standard_normal(net.shape)
+        centre = moebius.away_from(net * (1 + 1e-13 * noise), 0.2)
+        np.testing.assert_allclose(centre, [0, 0, 0.3 * np.sqrt(8)], atol=1e-9)
+
+
 # --- whole surfaces -----------------------------------------------------------------------
 
 ISOTHERMAL = (

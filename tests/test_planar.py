@@ -216,6 +216,18 @@ def test_closest_points_and_spreads():
     np.testing.assert_array_equal(outline.closed(square[::-1]), square[::-1][::-1])
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_of_feet_equally_near_the_first_is_taken(seed):
+    square = outline.closed(np.array([0, 1, 1 + 1j, 1j]))
+    t = np.linspace(0.05, 0.45, 9)
+    points = np.concatenate([t * (1 + 1j), 1 - t + 1j * t, [0.5 + 0.5j, 0, 1 + 0j, 1 + 1j]])
+    noise = np.random.default_rng(seed).standard_normal((2, len(points)))
+    feet, tangents = outline.closest(points + 1e-13 * (noise[0] + 1j * noise[1]), square)
+    np.testing.assert_allclose(feet, [*t, *(1 - t), 0.5, 0, 1, 1 + 1j], atol=1e-12)
+    np.testing.assert_allclose(tangents[:19], 1, atol=1e-12)
+    np.testing.assert_allclose(tangents[19:], [1, 1j, -1], atol=1e-12)  # of the side that leaves
+
+
 def test_crossing_faces_and_double_windings_are_found():
     z = np.array([0, 1j, 1, 1 + 1j])  # grid_quads(1, 1): v1 = 1, v2 = 0, v3 = 2, v4 = 3
     Q = mesh.grid_quads(1, 1)

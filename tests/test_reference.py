@@ -249,6 +249,49 @@ def test_corners_of_more_than_30_degrees_keep_the_direction_of_the_segment_hit(d
     np.testing.assert_allclose(e1, [[np.cos(half), np.sin(half), 0]], atol=1e-5)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_at_a_corner_the_boundary_leaves_whatever_the_rounding(seed):
+    R = reference.mesh(*grid(3, 3))
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    noise = 1e-13 * np.random.default_rng(seed).standard_normal(corners.shape)
+    for away in (0, 0.1):
+        outside = corners + away * (corners - [0.5, 0.5, 0])
+        feet, e1, *_ = R.boundary(outside + noise)
+        np.testing.assert_allclose(feet, corners, atol=1e-12)
+        np.testing.assert_allclose(e1, [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], atol=1e-9)
+
+
+def test_a_turn_of_30_degrees_up_to_rounding_is_no_corner():
+    angle = TAU * np.arange(12) / 12
+    rim = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    k = np.arange(12)
+    fan = np.stack([0 * k, k + 1, np.roll(k, -1) + 1], axis=1)
+    for turn in range(8):
+        V = np.concatenate([np.zeros((1, 3)), Rotation.from_rotvec([0, 0, turn]).apply(rim)])
+        feet, e1, *_ = reference.mesh(V, fan).boundary(1.1 * V[1:])
+        np.testing.assert_allclose(feet, V[1:], atol=1e-14)
+        np.testing.assert_allclose(dot(e1, feet), 0, atol=1e-12)
+
+
+def test_feet_of_points_over_a_valley_do_not_hang_on_rounding():
+    V, Q = grid(6, 6, lambda x, y: np.abs(x - 0.5) + np.abs(y - 0.5))
+    s = np.linspace(0.05, 0.95, 10)
+    points = np.concatenate([np.stack([0.5 + 0 * s, s, s + 1], 1), np.stack([s, s, s + 1.2], 1)])
+    ends = np.stack([s, s, 0 * s], axis=1)  # inside, as near to two sides of the boundary
+    known = None
+    for seed in range(4):
+        noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal((30, 3))
+        R = reference.mesh(V * (1 + 1e-14 * seed), Q)
+        flat = reference.mesh(*grid(6, 6))
+        found = *R.closest(points * noise[:20]), *flat.boundary(ends * noise[20:])[:2]
+        known = known or found
+        for one, two in zip(known, found, strict=True):
+            np.testing.assert_allclose(one, two, atol=1e-11)
+    far = norm(points - known[0])[:, 0]
+    assert (far <= norm(points[:, None] - V).min(axis=(1, 2)) + 1e-12).all()
+    np.testing.assert_allclose(norm(ends - known[2])[:, 0], np.minimum(s, 1 - s), atol=1e-11)
+
+
 def test_holes_are_boundary_too():
     V, Q = grid(5, 5)
     R = reference.mesh(V, np.delete(Q, 12, axis=0))  # the middle one of 5 x 5

@@ -6,7 +6,7 @@ Paper: Sec. 6.1 (beyond the paper: B8).
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, mesh, plot, publish, reference, solver, surfaces
+from .. import measure, mesh, plot, publish, reference, solver, surfaces, ties
 from ..problem import Weights
 from . import _optimised
 
@@ -81,7 +81,7 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
     view = plot.camera(*np.radians([azimuth, elevation]))
     found, stay = nets(theta, theta0), curves()
     off = {k: deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
-    scale = Normalize(0, 5 * np.ceil(off["F"].max() / 5))
+    scale = Normalize(0, ties.next_multiple(off["F"].max(), 5))
     for letter, (V, Q, result) in found.items():
         colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
         lines = [(_closed(V, Q), OLD, 0.9)]

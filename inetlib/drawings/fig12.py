@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, plot, publish, reference, solver, surfaces
+from .. import measure, plot, publish, reference, solver, surfaces, ties
 from . import _optimised
 
 SETTINGS = {  # degrees; what is not given is found
@@ -62,7 +62,7 @@ def draw(m=20, n=20, azimuth=-62, elevation=42):
     view = plot.camera(*np.radians([azimuth, elevation]))
     at = _four(m, n)
     off = _deviation(V, Q)
-    scale = Normalize(0, 5 * np.ceil(off.max() / 5))
+    scale = Normalize(0, ties.next_multiple(off.max(), 5))
     _panel(axes["start"], view, V, Q, at, _optimised.DEVIATION(scale(off))[:, :3])
     axes["start"].set_title("the start", loc="left")
     _optimised.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])

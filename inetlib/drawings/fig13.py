@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, mesh, moebius, plot, publish, reference, solver
+from .. import measure, mesh, moebius, plot, publish, reference, solver, ties
 from . import _optimised
 
 SETTINGS = {"A": {"theta": 60, "theta0": 60}, "B": {"theta": 60, "theta0": 45}}  # degrees
@@ -68,7 +68,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
     view = plot.camera(*np.radians([azimuth, elevation]))
     images = {k: moebius.apply(moebius.inversion(CENTRE, RADIUS), r.V) for k, r in found.items()}
     off = {k: _deviation(images[k], Q, r) for k, r in found.items()}
-    scale = Normalize(0, np.ceil(10 * max(x.max() for x in off.values())) / 10)
+    scale = Normalize(0, ties.next_multiple(max(x.max() for x in off.values()), 0.1))
     four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
     axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")
