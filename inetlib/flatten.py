@@ -114,7 +114,8 @@ def _axis(z, F, ends):
     if abs(moment) <= ROUND * size:
         return np.angle(way)
     axis = np.sqrt(moment)
-    return np.angle(axis if np.real(np.conj(axis) * way) >= 0 else -axis)
+    aside = np.exp(1e-3j)  # so that an axis at right angles to the way is no tie
+    return np.angle(axis if np.real(np.conj(axis) * way * aside) >= 0 else -axis)
 
 
 def _ends(V, loop):
@@ -159,18 +160,23 @@ def _ring(energy, loops, origin, bank, count):
 
 
 def _path(V, F, loops):
-    """The vertices of a shortest path along edges from the second loop to the first."""
+    """The vertices of a shortest path along edges from the second loop to the first.
+
+    Of equally short ones that with the first end, then with the lowest vertex numbers.
+    """
     edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
     length = np.linalg.norm(V[edges[:, 0]] - V[edges[:, 1]], axis=1)
     ends = np.sort(edges, axis=1)
     ends, index = np.unique(ends, axis=0, return_index=True)
     graph = coo_array((length[index], tuple(ends.T)), shape=(len(V), len(V))).tocsr()
-    distance, parent, _ = dijkstra(
-        graph, directed=False, indices=loops[1], min_only=True, return_predecessors=True
-    )
-    path = [int(loops[0][np.argmin(distance[loops[0]])])]
-    while parent[path[-1]] >= 0:
-        path.append(int(parent[path[-1]]))
+    graph = graph + graph.T
+    distance = dijkstra(graph, indices=loops[1], min_only=True)
+    path = [int(loops[0][ties.first_smallest(distance[loops[0]])])]
+    while distance[path[-1]] > 0:
+        row = slice(*graph.indptr[path[-1] : path[-1] + 2])
+        near = graph.indices[row]
+        on_way = ties.at_most(distance[near] + graph.data[row], distance[path[-1]])
+        path.append(int(near[on_way & (distance[near] < distance[path[-1]])].min()))
     return np.array(path[::-1])
 
 

@@ -356,7 +356,7 @@ def hexagon(rings=6):
     return V, np.concatenate([mesh.triangles(V, Q)[1], fan])
 
 
-SYMMETRIC = {
+COVERED = {
     "square": square,
     "hexagon": hexagon,
     "shell": lambda: examples.hanging_shell(16),
@@ -365,9 +365,9 @@ SYMMETRIC = {
 
 
 @pytest.mark.parametrize("pair", [(60, 60), (90, 90), (75, 50)])
-@pytest.mark.parametrize("name", SYMMETRIC)
+@pytest.mark.parametrize("name", COVERED)
 def test_the_last_digits_of_a_symmetric_surface_do_not_turn_its_net(name, pair):
-    V, F = SYMMETRIC[name]()
+    V, F = COVERED[name]()
     net = cover((V, F), pair, count=200)
     for seed in range(2):
         noise = 1 + 1e-13 * np.random.default_rng(seed).uniform(-1, 1, V.shape)
