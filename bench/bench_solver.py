@@ -22,7 +22,8 @@ import numpy as np
 import scipy
 
 import inetlib
-from inetlib import grids, matrixfree, measure, solver, surfaces
+from inetlib import measure, solver, surfaces
+from inetlib.solver import grids, sparse
 
 SETTINGS = {"E": {"theta": np.radians(60), "theta0": np.radians(60)}, "B": {"mu": 1.0}}
 CASES = {
@@ -127,8 +128,8 @@ def coarse_to_fine(V, Q, setting):
     whole = time.perf_counter() - start
     P = np.moveaxis(X, 2, 0)
     start = time.perf_counter()
-    f, A = matrixfree.equations(P, 0, 0)
-    d, _ = matrixfree.step(A, f)
+    f, A = sparse.equations(P, 0, 0)
+    d, _ = sparse.step(A, f)
     measure.angles(np.moveaxis(P - d, 0, 2).reshape(-1, 3), Q)
     step = time.perf_counter() - start
     steps = sum(step.kind != "start" for step in result.history)

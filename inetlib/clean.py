@@ -1,7 +1,4 @@
-"""A surface as somebody drew it: checked, repaired where that is safe, its topology named.
-
-Paper: Sec. 6.2 (beyond the paper).
-"""
+"""A surface as somebody drew it: checked, repaired where that is safe, its topology named."""
 
 from typing import NamedTuple
 
@@ -10,7 +7,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, mesh, repair
+from . import mesh, repair
 
 SAME = 1e-12  # of the diagonal: vertices closer than this are one
 FIT = {(1, 0): "a disk", (2, 0): "a ring"}  # (boundary loops, handles)
@@ -38,10 +35,8 @@ def clean(V, F):
     edges of three faces, pinched vertices, faces without area, Moebius strips, several
     pieces, and other numbers of boundary loops and handles.  Triangles of a ring are halved
     where an edge joins two vertices of one boundary loop; the surface stays the same.
-
-    Paper: Sec. 6.2 (beyond the paper).
     """
-    V, F = np.array(V, copy=True), adjacency.check_faces(F)
+    V, F = np.array(V, copy=True), mesh.check_faces(F)
     V, T = mesh.triangles(V, F)
     repairs = []
     F, dropped = _without_collapsed(V, F, T)
@@ -82,7 +77,7 @@ def _without_collapsed(V, F, T):
         return F, 0
     T = merged[0]
     kept = (np.roll(T, 1, axis=1) != T).all(axis=1)
-    return adjacency.check_faces(T[kept]), int(np.sum(~kept))
+    return mesh.check_faces(T[kept]), int(np.sum(~kept))
 
 
 def _without_chords(V, F, loops):
@@ -90,7 +85,7 @@ def _without_chords(V, F, loops):
 
     A boundary can then become a straight line, and no triangle with it.
     """
-    one = adjacency.pairs(F)[:, 0]
+    one = mesh.pairs(F)[:, 0]
     ends = np.stack([F.ravel()[one], np.roll(F, -1, axis=1).ravel()[one]], axis=1)
     chords = [pair for loop in loops for pair in ends[np.isin(ends, loop).all(axis=1)].tolist()]
     for number, (a, b) in enumerate(chords, start=len(V)):
@@ -128,15 +123,15 @@ def _merged(V, F, check=True):
     if not count:
         return None
     F = first[F]
-    return adjacency.check_faces(F) if check else F, count
+    return mesh.check_faces(F) if check else F, count
 
 
 def _orient(F):
     """The faces oriented alike, the way most of them are, and how many were turned."""
-    one, two = adjacency.pairs(F).T
+    one, two = mesh.pairs(F).T
     start, sides = F.ravel(), F.shape[1]
     clash = start[one] == start[two]
-    swap, loop = adjacency.two_colour(len(F), one // sides, two // sides, clash)
+    swap, loop = mesh.two_colour(len(F), one // sides, two // sides, clash)
     if loop is not None:
         raise ValueError(
             f"the surface is one-sided, like a Moebius strip: see the loop of {len(loop)} faces "
@@ -166,7 +161,7 @@ def _topology(F):
         raise ValueError(
             f"two parts of the surface touch at vertex {pinched[0]} only: not a manifold"
         )
-    loops = adjacency.boundary_loops(F)
+    loops = mesh.boundary_loops(F)
     edges = (F.size + sum(map(len, loops))) // 2
     handles = (2 - len(loops) - (len(np.unique(F)) - edges + len(F))) // 2
     if (len(loops), handles) not in FIT:

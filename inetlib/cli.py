@@ -2,8 +2,6 @@
 
 Wrong input is found before the work begins and becomes one sentence on stderr; a file is
 written only after everything went well.
-
-Paper: Sec. 6 (command line; beyond the paper).
 """
 
 import contextlib
@@ -29,11 +27,11 @@ from . import (
     options,
     paths,
     reference,
-    report,
     solver,
     surfaces,
 )
-from .adjacency import boundary_loops
+from .design import report
+from .mesh import boundary_loops
 
 DONE, NOT_FOUND, WRONG, STOPPED = 0, 1, 2, 130
 PROFILES = {
@@ -59,8 +57,6 @@ def main(arguments=None):
     """Run `inet` with a list of arguments, or those of the process: the exit code.
 
     0 done, 1 no net with these angles was found, 2 wrong input, 130 stopped by Ctrl-C.
-
-    Paper: Sec. 6 (command line; beyond the paper).
     """
     try:
         given = options.parser().parse_args(arguments)
@@ -136,7 +132,7 @@ def _cover(given):
     numbers = found.report._asdict()
     notes = _repairs(given.surface, [*repaired, *numbers.pop("repairs")])
     for name in ("quads", "theta", "theta0", "max_deviation", "mean_deviation", "flips"):
-        del numbers[name]  # `report.net` says them in degrees
+        del numbers[name]  # `design.report.net` says them in degrees
     return _finish(given, found.V, found.Q, (), numbers, notes)
 
 

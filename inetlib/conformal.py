@@ -9,25 +9,20 @@ Paper: Sec. 3.3, App. A.2.
 import numpy as np
 
 from . import mesh, parallelogram
-from .planar import planar_net as planar_net  # public here too
+from .planar import planar_net as planar_net
 
 
 def shear(z, theta0):
     """The shear x + iy -> x + y cot(theta0) + iy, which tilts vertical lines to theta0.
 
     z: complex number or array; theta0: radians in (0, pi).
-
-    Paper: Sec. 3.3 (shear).
     """
     parallelogram.ratios(np.pi / 2, theta0)  # raises for an angle out of range
     return z + np.imag(z) / np.tan(theta0)
 
 
 def unit(direction):
-    """The complex number of length 1 along a direction; ValueError for 0, NaN and infinity.
-
-    Paper: Sec. 3.3.
-    """
+    """The complex number of length 1 along a direction; ValueError for 0, NaN and infinity."""
     if not (np.isfinite(direction) and abs(direction) > 0):
         raise ValueError(f"direction = {direction}: a complex number other than 0 is wanted")
     return direction / abs(direction)
@@ -48,7 +43,7 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0):
     Paper: Sec. 3.3, App. A.2 (beyond the paper: B3, kappa: B6).
     """
     lam, mu = parallelogram.ratios(theta, theta0)
-    m, n = mesh._check_counts(m, n)
+    m, n = mesh.check_counts(m, n)
     if not (np.isfinite(edge) and edge > 0):
         raise ValueError(f"edge = {edge}: a positive length is wanted")
     u = edge * unit(direction)
@@ -62,8 +57,6 @@ def quads(z):
     """A grid as a mesh (V, Q) in the plane z = 0; see `mesh.grid_quads` for the numbering.
 
     z: complex (m+1, n+1), finite.
-
-    Paper: Sec. 3.3.
     """
     z = np.asarray(z, dtype=complex)
     if z.ndim != 2 or min(z.shape) < 2:
@@ -101,7 +94,7 @@ def inversion_circle(point, direction):
     Paper: App. A.2 (1/z).
     """
     (a, b), h = _parts(direction), _moment(point, direction)
-    xp = parallelogram._lib(a, b, h)
+    xp = parallelogram.library(a, b, h)
     length = xp.sqrt(a * a + b * b)
     if xp is np and abs(h) <= 1e-14 * length * abs(point):
         raise ValueError("the line passes through 0: 1/z takes it to a line, not to a circle")
@@ -176,8 +169,6 @@ def moebius(M, z):
 
     Products of matrices are compositions, `numpy.linalg.inv` the inverse map.  ValueError
     when det M = 0 or when a point lies on the pole -d/c.
-
-    Paper: Sec. 3.3 (remark).
     """
     M = np.asarray(M, dtype=complex)
     if M.shape != (2, 2) or not np.isfinite(M).all():
@@ -195,10 +186,7 @@ def moebius(M, z):
 
 
 def moebius_through(z, w):
-    """The matrix of the Moebius transformation with z[k] -> w[k] for three distinct points.
-
-    Paper: Sec. 3.3 (remark).
-    """
+    """The matrix of the Moebius transformation with z[k] -> w[k] for three distinct points."""
     return np.linalg.inv(_to_zero_one_infinity(w)) @ _to_zero_one_infinity(z)
 
 
@@ -207,3 +195,50 @@ def _to_zero_one_infinity(p):
     if p0 == p1 or p1 == p2 or p2 == p0 or not np.isfinite([p0, p1, p2]).all():
         raise ValueError(f"three distinct finite points are wanted, not {p0}, {p1}, {p2}")
     return np.array([[p1 - p2, -p0 * (p1 - p2)], [p1 - p0, -p2 * (p1 - p0)]])
+
+
+# --- How far the image of a finite cell under a conformal map is from the cell's own ratios. ---
+
+
+def cell_errors(f, z, u, v):
+    """(ln K/K0, ln R/R0) of the image of a cell under f, complex.
+
+    f: a function of a complex array; z, u, v: complex numbers, u and v not parallel.
+
+    Paper: Sec. 3.3 (beyond the paper: B6).
+    """
+    if not (np.imag(np.conj(u) * v) != 0 and np.isfinite([z, u, v]).all()):
+        raise ValueError(f"u = {u}, v = {v}: finite edges that are not parallel are wanted")
+    cell = z + np.array([[-u - v, v - u], [u - v, u + v]]) / 2
+    K, R = (x[0, 0] for x in complex_ratios(np.asarray(f(cell))))
+    return np.log(K * (u - v) / (u + v)), np.log(R * u / v)
+
+
+def leading_errors(first, third, u, v):
+    """What `cell_errors` are to second order: (S u v / 6, S (u^2 - v^2) / 12), S = third / first.
+
+    first, third: f' and f''' at the centre of the cell, numbers, arrays or sympy symbols;
+    ValueError where the number f' is 0.
+
+    Paper: Sec. 3.3 (beyond the paper: B6).
+    """
+    if not hasattr(first, "free_symbols") and not np.all(first):
+        raise ValueError("f' = 0: the map is not conformal there")
+    return third / first * u * v / 6, third / first * (u**2 - v**2) / 12
+
+
+def kappa(f, z):
+    """f'''/f' of a sympy expression f in the symbol z, simplified.
+
+    Where it is a constant, and only there, the ratios of all images of congruent cells agree
+    at every mesh size: f is then a + b z + c z^2 or a + b exp(gz) + c exp(-gz), kappa = g^2.
+    This is the number that `conformal.sheared_grid` takes.  ValueError for a constant f.
+
+    Paper: Sec. 3.3 (beyond the paper: B6).
+    """
+    import sympy
+
+    f = sympy.sympify(f)
+    if sympy.simplify(f.diff(z)) == 0:
+        raise ValueError(f"{f} does not depend on {z}")
+    return sympy.simplify(f.diff(z, 3) / f.diff(z))

@@ -3,21 +3,145 @@
 A planar net is a complex array z (or an array (..., 2) of plane points); every map here
 returns points (..., 3) and keeps lengths, angles and areas measured along the surface.  At
 its flat end each map leaves the net where it is, in the plane z = 0.
-
-Paper: Sec. 5.1.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.polynomial import Chebyshev
+from scipy.interpolate import BPoly
 from scipy.optimize import root
 
 from .conformal import unit
-from .curves import Curve as Curve  # public here too
-from .curves import arc_length as arc_length
-from .curves import bezier as bezier
-from .curves import darboux as darboux
-from .curves import require, require_dimension, require_rulings
-from .mesh import _check_counts
-from .parallelogram import _lib, ratios, rho
+from .mesh import check_counts
+from .parallelogram import library, ratios, rho
+
+
+class Curve(NamedTuple):
+    """A regular curve by arc length, made by `arc_length`.
+
+    position  position(t, k): the k-th derivative at the parameters t, (..., 2 or 3)
+    integral  integral(t): the arc length from the start to t
+    start, stop, length
+    """
+
+    position: object
+    integral: object
+    start: float
+    stop: float
+    length: float
+
+    def parameter(self, s):
+        """The parameters t at the arc lengths s; ValueError outside [0, length]."""
+        s = np.asarray(s, dtype=float)
+        slack = 1e-9 * self.length
+        require(
+            (s >= -slack) & (s <= self.length + slack),
+            lambda at: f"asks for arc length {s[at]:.6g} on a curve of length {self.length:.6g}",
+        )
+        t = np.linspace(self.start, self.stop, 257)
+        t = np.interp(s, self.integral(t), t)
+        for _ in range(6):  # Newton
+            t = t - (self.integral(t) - s) / self.integral.deriv()(t)
+        return t
+
+    def point(self, s):
+        """Points (..., 2 or 3) at the arc lengths s."""
+        return self.position(self.parameter(s), 0)
+
+
+def bezier(points):
+    """A Bezier curve as a function position(t, k=0): its k-th derivative at t in [0, 1].
+
+    points: (degree + 1, 2 or 3), at least two control points.
+    """
+    points = np.asarray(points, dtype=float)
+    if points.ndim != 2 or len(points) < 2 or points.shape[1] not in (2, 3):
+        raise ValueError(
+            f"points has the shape {points.shape}: at least two control points of two or "
+            "three coordinates are wanted"
+        )
+    if not np.isfinite(points).all():
+        raise ValueError("a control point has a coordinate that is not a finite number")
+    return BPoly(points[:, None], [0.0, 1.0])
+
+
+def arc_length(position, start=0.0, stop=1.0):
+    """A `Curve` from position(t, k), the k-th derivative of a curve on start <= t <= stop.
+
+    The speed is expanded in Chebyshev polynomials to round-off, so arc lengths are good to
+    about 1e-13 of the length.  ValueError when the curve stops on its way (a cusp).
+    """
+    if not (np.isfinite([start, stop]).all() and start < stop):
+        raise ValueError(f"the curve runs from {start} to {stop}: start < stop is wanted")
+
+    def speed(t):
+        return np.linalg.norm(position(t, 1), axis=-1)
+
+    for degree in (32, 64, 128, 256, 512, 1024):
+        series = Chebyshev.interpolate(speed, degree, domain=[start, stop])
+        size = np.abs(series.coef)
+        if size[-degree // 8 :].max() < 1e-14 * size.max():
+            integral = series.integ(lbnd=start)
+            if series(np.linspace(start, stop, 257)).min() > 1e-9 * size.max():
+                return Curve(position, integral, start, stop, float(integral(stop)))
+    raise ValueError("the curve has a cusp, or nearly one: its speed vanishes or jumps there")
+
+
+def require(good, why):
+    """ValueError that names the first grid point that is not good; why(index) says the rest.
+
+    good: array of booleans; why: a function of the index, a tuple.
+    """
+    if not np.all(good):
+        at = np.unravel_index(np.argmin(good), np.shape(good))
+        raise ValueError(f"grid point {tuple(map(int, at))} {why(at)}")
+
+
+def require_dimension(curve, dimension):
+    """ValueError unless the points of `curve` have so many coordinates."""
+    found = np.shape(curve.position(curve.start, 0))[-1]
+    if found != dimension:
+        raise ValueError(f"the curve has {found} coordinates: {dimension} are wanted here")
+
+
+def require_rulings(curve):
+    """ValueError unless `curve` is a space curve whose curvature never vanishes."""
+    require_dimension(curve, 3)
+    t = np.linspace(curve.start, curve.stop, 1025)
+    b = np.cross(curve.position(t, 1), curve.position(t, 2))
+    curvature = _norm(b) / _norm(curve.position(t, 1)) ** 3
+    good = curvature * curve.length > 1e-9
+    good[1:] &= np.sum(b[1:] * b[:-1], axis=-1) > 0
+    if not good.all():
+        s = curve.integral(t[np.argmin(good)])
+        raise ValueError(
+            f"the curvature vanishes near arc length {s:.6g}: the surface has no ruling there"
+        )
+
+
+def _norm(a):
+    return np.sqrt(np.sum(a * a, axis=-1))
+
+
+def darboux(curve, t):
+    """(cot psi, d cot psi / ds, T, B, kappa) at the parameters t of a space `Curve`.
+
+    The ruling cot(psi) T + B has the direction of the Darboux vector tau T + kappa B and makes
+    the angle psi with the tangent: cot psi = tau / kappa.
+    """
+    r1, r2, r3, r4 = (curve.position(t, k) for k in (1, 2, 3, 4))
+    b = np.cross(r1, r2)
+    speed, size = _norm(r1), _norm(b)
+    scale = (speed / size) ** 3  # tau / kappa = scale det(r1, r2, r3)
+    cot = scale * np.sum(b * r3, axis=-1)
+    growth = np.sum(r1 * r2, axis=-1) / speed**2
+    growth = growth - np.sum(b * np.cross(r1, r3), axis=-1) / size**2
+    rate = (scale * np.sum(b * r4, axis=-1) + 3 * cot * growth) / speed
+    return cot, rate, r1 / speed[..., None], b / size[..., None], size / speed**3
+
+
+# --- Isometric bending of planar nets: cylinders, cones, and the surface along any geodesic. ---
 
 KNOTS = 2049  # on a curve, where the edge of regression is looked for
 SLACK = 1e-12  # of the length of a curve: rounding, where the first and last rulings tie
@@ -52,10 +176,8 @@ def roll_coordinates(x, y, curvature):
 
     X = sin(k x) / k, Y = y, Z = (1 - cos(k x)) / k for the curvature k, written so that k = 0
     is the plane; numbers, arrays or sympy symbols.
-
-    Paper: Sec. 5.1 (rotational cylinder).
     """
-    xp = _lib(x, y, curvature)
+    xp = library(x, y, curvature)
 
     def sinc(t):
         return np.sinc(t / np.pi) if xp is np else xp.sin(t) / t
@@ -86,10 +208,8 @@ def cone_coordinates(distance, angle, gamma):
     """Coordinates (X, Y, Z) of a plane point in polar coordinates on a cone, apex at 0.
 
     gamma: the angle between the rulings and the z-axis; numbers, arrays or sympy symbols.
-
-    Paper: Sec. 5.1 (cone).
     """
-    xp = _lib(distance, angle, gamma)
+    xp = library(distance, angle, gamma)
     narrow, lift = xp.sin(gamma), xp.sin(xp.pi / 2 - gamma)  # exactly 1 and 0 for pi/2
     turn = angle / narrow
     return distance * narrow * xp.cos(turn), distance * narrow * xp.sin(turn), distance * lift
@@ -127,8 +247,6 @@ def cylinder(z, directrix, direction=1):
 
     z: complex (...) or real (..., 2), x along `direction` from 0 to the length of the curve;
     directrix: a `Curve` of two coordinates, which become the horizontal and the vertical one.
-
-    Paper: Sec. 5.1 (general cylinder).
     """
     z, along = _complex(z), unit(direction)
     require_dimension(directrix, 2)
@@ -205,8 +323,6 @@ def regression(curve, s):
     """The edge of regression at the arc lengths s: (plane points complex (...), points (..., 3)).
 
     nan where neighbouring rulings are parallel, as on a cylinder.
-
-    Paper: Sec. 5.1 (tangent surface).
     """
     require_rulings(curve)
     t = curve.parameter(s)
@@ -225,8 +341,6 @@ def tangent(bend, z, direction, step=0.02):
 
     bend: function of complex arrays; z, direction: complex, broadcasting.  Eight central
     differences of order step^8; the points z +- 4 step direction must lie on the surface.
-
-    Paper: Sec. 5.1 (measuring).
     """
     z, change = np.broadcast_arrays(np.asarray(z, dtype=complex), step * np.asarray(direction))
     total = 0
@@ -242,15 +356,13 @@ def rolled_grid(theta, theta0, m, n, curvature, origin=0, edge=1.0, direction=1)
     `roll(z, curvature)` have exactly the angles theta and theta0 in every face.  For the
     direction 1 and edge = 2 pi / (m curvature) the net closes.  ValueError when the edge is
     too long for such a face.
-
-    Paper: Sec. 5.1 (beyond the paper).
     """
     lam, mu = ratios(theta, theta0)
     if not np.isfinite(curvature):
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")
     if not (np.isfinite(edge) and edge > 0) or abs(edge * curvature) >= np.pi:
         raise ValueError(f"edge = {edge}: it must be positive and shorter than half a turn")
-    m, n = _check_counts(m, n)
+    m, n = check_counts(m, n)
     u, half = edge * unit(direction), curvature / 2
 
     def square(a, b=0):  # of the chord along a, in the middle of two that are b apart

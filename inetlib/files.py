@@ -3,8 +3,6 @@
 A file is written beside its place, under a name `.new-PID-...`, and renamed when complete.
 What a process that was killed has left is removed by the next that writes into the folder.
 Nothing slow is imported: `start` needs this module before all others.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 import os
@@ -22,8 +20,6 @@ def replacing(path):
     """A name beside `path` to write to, renamed onto it when the block ends well, else removed.
 
     It ends like `path`, as writers look at the suffix.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
     with _temporary(path.parent, path.suffix.lower()) as new:
@@ -34,10 +30,7 @@ def replacing(path):
 
 @contextmanager
 def scratch(folder):
-    """A new, empty folder in `folder`, removed at the end of the block.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """A new, empty folder in `folder`, removed at the end of the block."""
     with _temporary(Path(folder)) as new:
         new.mkdir()
         yield new
@@ -56,19 +49,13 @@ def _temporary(folder, suffix=""):
 
 
 def clear():
-    """Remove the temporary files and folders of this process: it is about to end.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Remove the temporary files and folders of this process: it is about to end."""
     for path in list(LIVE):
         _remove(path)
 
 
 def sweep(folder):
-    """Remove what processes that are gone have left in a folder, which need not be there.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Remove what processes that are gone have left in a folder, which need not be there."""
     folder, live = Path(folder), {path.name for path in LIVE}
     with suppress(OSError):
         for name in os.listdir(folder):

@@ -182,10 +182,7 @@ def theta_defect(V, Q):
 
 
 def spread(values, target=None):
-    """`Spread` of an array; deviations are from `target`, or from the mean when it is None.
-
-    Paper: Sec. 6.3 (statistics; beyond the paper).
-    """
+    """`Spread` of an array; deviations are from `target`, or from the mean when it is None."""
     values = np.asarray(values, dtype=float)
     if values.size == 0 or not np.isfinite(values).all():
         raise ValueError("spread needs at least one value, all of them finite")
@@ -219,10 +216,7 @@ def _against(normal, neighbours):
 
 
 def flipped(V, Q, neighbours=None):
-    """The flipped faces (see `quality`); neighbours: `mesh.face_neighbours(Q)` if known.
-
-    Paper: Sec. 6 (quality; beyond the paper).
-    """
+    """The flipped faces (see `quality`); neighbours: `mesh.face_neighbours(Q)` if known."""
     d1, d2, _, _ = vectors(V, Q)
     neighbours = mesh.face_neighbours(Q) if neighbours is None else neighbours
     return _against(_normals(d1, d2)[0], neighbours)
@@ -237,8 +231,6 @@ def quality(V, Q):
     aspect      the largest ratio of the longer to the shorter medial line
     planarity   the largest distance between the diagonals over their mean length
                 (0 for planar faces)
-
-    Paper: Sec. 6 (quality; beyond the paper).
     """
     d1, d2, m13, m24 = vectors(V, Q)
     normal, twice_area = _normals(d1, d2)
@@ -266,8 +258,6 @@ def hausdorff(V, Q, W, R, refine=1):
     distances of the surfaces.  `refine` = k > 1 improves them: the edges of the triangles are
     divided into k parts and all points of this lattice measured, (k + 1)^2 a quad.  The unit
     is that of the coordinates; vertices of no face do not count.
-
-    Paper: Sec. 5.2 (Hausdorff distances).
     """
     if not (refine >= 1 and int(refine) == refine):
         raise ValueError(f"refine = {refine}: a whole number of at least 1 is wanted")

@@ -11,26 +11,213 @@ The corners of every quad are labelled from the top left, u running along i and 
 
 A quarter turn of the labels turns both ratios into their reciprocals, so a mesh is usable
 only when all faces agree (`is_labelled`); a half turn changes nothing.
-
-Paper: Sec. 2, Sec. 4.1.
 """
 
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from . import ties
-from .adjacency import (
-    boundary_loops,
-    chains,
-    check_faces,
-    check_quads,
-    fans,
-    pairs,
-    twins,
-    two_colour,
-)
-from .adjacency import face_neighbours as face_neighbours  # boundary_loops, twins: public here too
+
+
+def check_quads(Q):
+    """The faces as int64 (f, 4), or a ValueError that says why they are no quads."""
+    Q = np.asarray(Q)
+    if Q.size > 0 and (Q.ndim != 2 or Q.shape[1] != 4):
+        what = "triangles" if Q.ndim == 2 and Q.shape[1] == 3 else f"an array of shape {Q.shape}"
+        raise ValueError(f"the faces are {what}: quads are wanted, one row of four vertices each")
+    return check_faces(Q)
+
+
+def check_faces(Q):
+    """The faces, triangles (f, 3) or quads (f, 4), as int64, or a ValueError that says why not."""
+    Q = np.asarray(Q)
+    if Q.size == 0:
+        raise ValueError("the mesh has no faces")
+    if Q.ndim != 2 or Q.shape[1] not in (3, 4):
+        raise ValueError(
+            f"the faces are an array of shape {Q.shape}: rows of three or four vertices are wanted"
+        )
+    if not np.issubdtype(Q.dtype, np.integer):
+        raise ValueError(f"the faces are of type {Q.dtype}: integers are wanted")
+    if Q.min() < 0:
+        raise ValueError(
+            f"face {np.argmin(Q.min(axis=1))} names vertex {Q.min()}: counting starts at 0"
+        )
+    repeated = np.any([a == b for a, b in combinations(Q.T, 2)], axis=0)
+    if repeated.any():
+        face = np.argmax(repeated)
+        raise ValueError(f"face {face} uses a vertex twice: {Q[face].tolist()}")
+    return Q.astype(np.int64, copy=False)
+
+
+def pairs(Q):
+    """Pairs of half-edges on the same edge: (k, 2); ValueError for non-manifold edges."""
+    start, end = Q.ravel(), np.roll(Q, -1, axis=1).ravel()
+    key = np.minimum(start, end) * (Q.max() + 1) + np.maximum(start, end)
+    order = np.argsort(key, kind="stable")
+    same = key[order][1:] == key[order][:-1]
+    three = np.flatnonzero(same[1:] & same[:-1])
+    if three.size:
+        h = order[three[0]]
+        raise ValueError(f"edge {start[h]}-{end[h]} belongs to more than two faces: not a manifold")
+    first = np.flatnonzero(same)
+    return np.stack([order[first], order[first + 1]], axis=1)
+
+
+def twins(Q):
+    """The opposite half-edge of each half-edge, -1 on the boundary: int64 (4 f,).
+
+    Q: (f, 4).  Half-edge 4 f + k runs from Q[f, k] to Q[f, (k+1) % 4].  ValueError for
+    non-manifold edges and for neighbouring faces of opposite orientation.
+    """
+    return opposites(check_quads(Q))
+
+
+def opposites(F):
+    """`twins` of checked faces of any kind, triangles (f, 3) or quads (f, 4): int64."""
+    one, two = pairs(F).T
+    start, sides = F.ravel(), F.shape[1]
+    clash = np.flatnonzero(start[one] == start[two])
+    if clash.size:
+        faces = one[clash[0]] // sides, two[clash[0]] // sides
+        raise ValueError(
+            f"faces {faces[0]} and {faces[1]} are oriented against each other"
+            + (": see mesh.label" if sides == 4 else "")
+        )
+    twin = np.full(F.size, -1)
+    twin[one], twin[two] = two, one
+    return twin
+
+
+def face_neighbours(Q):
+    """The faces across the four edges of each face, -1 at the boundary: (f, 4)."""
+    twin = twins(Q)
+    return np.where(twin >= 0, twin // 4, -1).reshape(-1, 4)
+
+
+def boundary_loops(Q):
+    """The boundary as a list of closed loops of vertex indices, the mesh on their left.
+
+    Q: quads (f, 4) or triangles (f, 3).  The first vertex is not repeated.  A hole (a
+    removed face) gives a loop of its own.
+    """
+    Q = check_faces(Q)
+    half = np.flatnonzero(opposites(Q) < 0)
+    start, end = Q.ravel()[half], np.roll(Q, -1, axis=1).ravel()[half]
+    vertex, count = np.unique(start, return_counts=True)
+    if (count > 1).any():
+        raise ValueError(
+            f"two boundary loops touch at vertex {vertex[count > 1][0]}: not a manifold"
+        )
+    following = dict(zip(start.tolist(), end.tolist(), strict=True))
+    loops = []
+    while following:
+        loop = [next(iter(following))]
+        while (after := following.pop(loop[-1])) != loop[0]:
+            loop.append(after)
+        loops.append(np.array(loop))
+    return loops
+
+
+def two_colour(count, a, b, differ):
+    """Booleans x with x[a] xor x[b] = differ, and None; or (None, a loop that forbids it).
+
+    count: how many nodes; a, b: node indices (k,); differ: booleans (k,).  Solvable exactly
+    when the double cover with the nodes i and i + count is disconnected.
+    """
+    rows = np.concatenate([a, a + count])
+    cols = np.concatenate([b + count * differ, b + count * ~differ])
+    graph = coo_array((np.ones(rows.size, dtype=np.int8), (rows, cols)), shape=(2 * count,) * 2)
+    _, cover = connected_components(graph, directed=False)
+    stuck = np.flatnonzero(cover[:count] == cover[count:])
+    if stuck.size:
+        _, parent = breadth_first_order(graph.tocsr(), stuck[0], directed=False)
+        path = [int(stuck[0] + count)]
+        while path[-1] != stuck[0]:
+            path.append(int(parent[path[-1]]))
+        return None, [node % count for node in path[:-1]]
+    return cover[:count] > cover[count:], None
+
+
+def fans(Q):
+    """The outgoing half-edges of interior vertices, counter-clockwise: {valence: (k, valence)}.
+
+    Q: (f, 4).  ValueError where two surfaces share only a vertex.
+    """
+    twin = twins(Q)
+    turn = twin[np.arange(twin.size).reshape(-1, 4)[:, [3, 0, 1, 2]].ravel()]
+    valence = np.bincount(Q.ravel())
+    inner = valence > 0
+    inner[Q.ravel()[twin < 0]] = inner[np.roll(Q, -1, axis=1).ravel()[twin < 0]] = False
+    start = np.full(valence.size, -1)
+    start[Q.ravel()[::-1]] = np.arange(Q.size)[::-1]
+    found = {}
+    for k in np.unique(valence[inner]):
+        fan = [start[np.flatnonzero(inner & (valence == k))]]
+        for _ in range(k - 1):
+            fan.append(turn[fan[-1]])
+            if (again := fan[-1] == fan[0]).any():
+                vertex = Q.ravel()[fan[0][np.argmax(again)]]
+                raise ValueError(f"the faces at vertex {vertex} form two fans: not a manifold")
+        found[int(k)] = np.stack(fan, axis=1)
+    return found
+
+
+def chains(edges):
+    """Curves along the edges, passing through vertices that exactly two of the edges share.
+
+    edges: (k, 2) vertex indices.  A list of index arrays; closed curves repeat the first.
+    """
+    degree = np.bincount(edges.ravel())
+    at = {}
+    for number, (a, b) in enumerate(edges.tolist()):
+        at.setdefault(a, []).append(number)
+        at.setdefault(b, []).append(number)
+    left = np.ones(len(edges), dtype=bool)
+
+    def walk(vertex, number):
+        chain = [vertex]
+        while number is not None:
+            left[number] = False
+            a, b = edges[number]
+            chain.append(int(b if a == chain[-1] else a))
+            onward = [k for k in at[chain[-1]] if left[k]] if degree[chain[-1]] == 2 else []
+            number = onward[0] if onward else None
+        return np.array(chain)
+
+    ends = np.flatnonzero((degree > 0) & (degree != 2)).tolist()
+    open_ones = [walk(end, k) for end in ends for k in at[end] if left[k]]
+    return open_ones + [walk(int(a), k) for k, (a, _) in enumerate(edges) if left[k]]
+
+
+def triples(Q):
+    """Three neighbouring vertices (left, middle, right) along the mesh polylines: (k, 3).
+
+    Q: (f, 4), consistently labelled.  Along u-edges and along v-edges, wherever exactly two
+    edges of the family meet: not at singular vertices and not at the ends of polylines.
+    """
+    Q = check_quads(Q)
+    v1, v2, v3, v4 = Q.T
+    found = []
+    for start, end in (((v2, v1), (v3, v4)), ((v2, v3), (v1, v4))):
+        one, two = np.concatenate(start), np.concatenate(end)
+        count = Q.max() + 1
+        key = np.unique(np.minimum(one, two) * count + np.maximum(one, two))
+        low, high = np.divmod(key, count)
+        at, other = np.concatenate([low, high]), np.concatenate([high, low])
+        order = np.argsort(at, kind="stable")
+        degree = np.bincount(at)
+        first = np.concatenate([[0], np.cumsum(degree)[:-1]])[degree == 2]
+        left, right = other[order[first]], other[order[first + 1]]
+        found.append(np.stack([left, at[order[first]], right], axis=1))
+    return np.concatenate(found)
+
+
+# --- Quad meshes as plain arrays: V (n, 3) float64 and Q (f, 4) int64, counter-clockwise. ---
 
 
 class Checkerboard(NamedTuple):
@@ -58,16 +245,15 @@ def grid_quads(m, n):
     """Quads (m n, 4) of a grid of (m+1)(n+1) vertices, vertex (i, j) numbered i (n+1) + j.
 
     m, n: positive integers, the numbers of quads along u (i) and v (j); else ValueError.
-
-    Paper: Sec. 4.3.
     """
-    m, n = _check_counts(m, n)
+    m, n = check_counts(m, n)
     i, j = np.meshgrid(np.arange(m), np.arange(n), indexing="ij")
     v2 = (i * (n + 1) + j).ravel()
     return np.stack([v2 + 1, v2, v2 + n + 1, v2 + n + 2], axis=1)
 
 
-def _check_counts(m, n):
+def check_counts(m, n):
+    """(m, n) as ints, or ValueError unless both are whole numbers from 1 upwards."""
     if not (m >= 1 and n >= 1):
         raise ValueError(f"m = {m}, n = {n}: a grid needs at least one quad each way")
     if int(m) != m or int(n) != n:
@@ -82,8 +268,6 @@ def polygon_rings(sides, rings):
     counter-clockwise.  Ring k has 2 sides k quads.  The vertices lie on the image of square
     lattices under z^(4/sides), so the faces are nearly square.  For even `sides` the quads
     are labelled consistently; for odd ones no labelling exists (see `label`).
-
-    Paper: Sec. 6.3 (the mesh with a singular face).
     """
     if sides < 3 or rings < 1:
         raise ValueError(f"sides = {sides}, rings = {rings}: needs sides >= 3 and rings >= 1")
@@ -113,8 +297,6 @@ def check(V, Q):
 
     Checks shapes, indices, NaN, repeated corners, non-manifold and inconsistently oriented
     edges.  V: (n, 3), Q: (f, 4).
-
-    Paper: Sec. 4.1.
     """
     V, Q = check_arrays(V, Q)
     twins(Q)
@@ -122,10 +304,7 @@ def check(V, Q):
 
 
 def check_arrays(V, Q):
-    """The part of `check` that needs no adjacency: shapes, indices, NaN, repeated corners.
-
-    Paper: Sec. 4.1.
-    """
+    """The part of `check` that needs no adjacency: shapes, indices, NaN, repeated corners."""
     Q = check_quads(Q)
     return _check_vertices(V, Q), Q
 
@@ -156,8 +335,6 @@ def is_labelled(Q):
     """Whether all faces agree on which edges run along u and which along v.
 
     Q: (f, 4), consistently oriented, else ValueError.
-
-    Paper: Sec. 4.1 (labels).
     """
     twin = twins(Q)
     inner = np.flatnonzero(twin >= 0)
@@ -239,8 +416,6 @@ def triangles(V, F):
 
     V: (n, 3); F: quads (f, 4), or triangles (f, 3), which stay; ValueError as in `check_arrays`.
     Quad k becomes the rows 2 k and 2 k + 1; diagonals of equal length (see `ties`): along v1 v3.
-
-    Paper: Sec. 6.3 (reference surfaces).
     """
     F = check_faces(F)
     V = _check_vertices(V, F)
@@ -280,8 +455,6 @@ def diagonal_meshes(Q):
     diagonals of Q.  Qa has the corners that share the colour of vertex Q[0, 0].  The labels
     follow the diagonal parametrisation: u along d1, v along d2.  ValueError when the mesh
     has no such colouring.
-
-    Paper: Sec. 2, Sec. 4.2.
     """
     if not is_labelled(Q):
         raise ValueError("the faces do not agree on u and v: call mesh.label first")

@@ -6,14 +6,12 @@ Inversions, motions, scalings and all they generate are then the 5 x 5 matrices 
 this product: M2 @ M1 does M1 first, `numpy.linalg.inv(M)` undoes M.  Squared coordinates
 enter: keep the net near the origin, and the radius of an inversion about as large as the
 distance of its centre, and 10 digits or more are right, there and back.
-
-Paper: Sec. 3.3 (remark), Sec. 5.2.
 """
 
 import numpy as np
 
 from . import ties
-from .parallelogram import _require_positive
+from .parallelogram import check_positive
 from .surfaces import Surface
 
 LORENTZ = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
@@ -24,10 +22,7 @@ LORENTZ.setflags(write=False)
 
 
 def lift(V):
-    """The points V (..., 3) as lifted vectors (..., 5), X4 - X3 = 1; ValueError for NaN, inf.
-
-    Paper: Sec. 5.2 (beyond the paper).
-    """
+    """The points V (..., 3) as lifted vectors (..., 5), X4 - X3 = 1; ValueError for NaN, inf."""
     V = _points(V)
     square = np.sum(V * V, axis=-1, keepdims=True)
     return np.concatenate([V, (square - 1) / 2, (square + 1) / 2], axis=-1)
@@ -38,10 +33,8 @@ def inversion(centre=(0, 0, 0), radius=1.0):
 
     centre: (3,), goes to infinity; radius > 0.  It is its own inverse and reverses the
     orientation.
-
-    Paper: Sec. 5.2.
     """
-    centre, radius = _vector("centre", centre), _require_positive("radius", radius)
+    centre, radius = _vector("centre", centre), check_positive("radius", radius)
     k = centre @ centre - radius**2
     sphere = np.array([*centre, (k - 1) / 2, (k + 1) / 2])  # <sphere, sphere> = radius^2
     return np.eye(5) - 2 / radius**2 * np.outer(sphere, LORENTZ @ sphere)
@@ -52,10 +45,8 @@ def similarity(rotation=None, scale=1.0, shift=(0, 0, 0)):
 
     rotation: orthogonal (3, 3), a reflection is welcome, default the identity; scale > 0;
     shift: (3,).  ValueError when the matrix is not orthogonal within 1e-9.
-
-    Paper: Sec. 5.2.
     """
-    scale, shift = _require_positive("scale", scale), _vector("shift", shift)
+    scale, shift = check_positive("scale", scale), _vector("shift", shift)
     R = np.eye(3) if rotation is None else np.asarray(rotation, dtype=float)
     if R.shape != (3, 3) or not np.abs(R.T @ R - np.eye(3)).max() <= 1e-9:
         raise ValueError("rotation must be an orthogonal 3 x 3 matrix")
@@ -79,8 +70,6 @@ def check(M):
     """M as a float array, or a ValueError when it is not a 5 x 5 Lorentz matrix.
 
     M^T J M = J with J = diag(1, 1, 1, 1, -1) must hold to 1e-9 of the largest entry squared.
-
-    Paper: Sec. 5.2 (beyond the paper).
     """
     M = np.asarray(M, dtype=float)
     if M.shape != (5, 5) or not np.isfinite(M).all():
@@ -114,10 +103,7 @@ def apply(M, V):
 
 
 def pole(M):
-    """The point (3,) that M sends to infinity; None when M is a similarity.
-
-    Paper: Sec. 5.2.
-    """
+    """The point (3,) that M sends to infinity; None when M is a similarity."""
     M = check(M)
     # M^-1 = J M^T J takes the point at infinity, (0, 0, 0, 1, 1), back to the pole.
     X = LORENTZ @ M.T @ np.array([0, 0, 0, 1.0, -1.0])
@@ -130,10 +116,8 @@ def away_from(V, clearance=0.2):
 
     No vertex is nearer to it than clearance times the diagonal of the bounding box.  The
     search leaves the mean of V along the axes z, y and x in small steps.
-
-    Paper: Sec. 5.2 (beyond the paper).
     """
-    V, clearance = _points(V).reshape(-1, 3), _require_positive("clearance", clearance)
+    V, clearance = _points(V).reshape(-1, 3), check_positive("clearance", clearance)
     diagonal = np.linalg.norm(np.ptp(V, axis=0))
     if len(V) < 2 or not diagonal > 0:
         raise ValueError("V needs at least two different points")

@@ -1,7 +1,4 @@
-"""A motif repeated in every quad of a net: all inscribed parallelograms are similar.
-
-Paper: Sec. 7 (repetitive patterns; beyond the paper).
-"""
+"""A motif repeated in every quad of a net: all inscribed parallelograms are similar."""
 
 import numpy as np
 
@@ -15,8 +12,6 @@ def place(V, Q, curves, lam, theta):
     with the half sides (1, 0) along d1 and lam (cos theta, sin theta) along d2; the motif
     fits when it stays inside.  lam, theta (radians): those of the net.  On a net with these
     angles every copy is a similar image; elsewhere it is an affine one.
-
-    Paper: Sec. 7 (repetitive patterns; beyond the paper).
     """
     if not (lam > 0 and 0 < theta < np.pi):
         raise ValueError(f"lam = {lam:.6g}, theta = {theta:.6g}: lam > 0, 0 < theta < pi wanted")
@@ -36,10 +31,7 @@ def place(V, Q, curves, lam, theta):
 
 
 def inner_circle(lam, theta, share=0.9, count=25):
-    """The circle around 0 that touches two sides of the parallelogram, times `share`: (k, 2).
-
-    Paper: Sec. 7 (repetitive patterns; beyond the paper).
-    """
+    """The circle around 0 that touches two sides of the parallelogram, times `share`: (k, 2)."""
     t = np.linspace(0, 2 * np.pi, count)
     radius = share * np.sin(theta) * min(1.0, lam)
     return radius * np.stack([np.cos(t), np.sin(t)], axis=1)
@@ -49,8 +41,6 @@ def weave(lam, theta, share=0.35):
     """Two waves, each from a corner of the parallelogram to the opposite one: list of (k, 2).
 
     The corners are the middles of the quad's edges, where those of its neighbours go on.
-
-    Paper: Sec. 7 (repetitive patterns; beyond the paper).
     """
     t = np.linspace(-1, 1, 25)
     one, two = np.array([1.0, 0.0]), lam * np.array([np.cos(theta), np.sin(theta)])

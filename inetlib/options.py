@@ -1,8 +1,6 @@
 """What the command line `inet` understands: its commands, options, checks and help texts.
 
 Angles are degrees here, and everywhere on the command line.
-
-Paper: Sec. 6 (command line; beyond the paper).
 """
 
 import argparse
@@ -57,10 +55,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser():
-    """The parser of the command line: `command` names the command, the rest are its options.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """The parser of the command line: `command` names the command, the rest are its options."""
     top = Parser(prog="inet", description=DESCRIPTION, **_texts(None))
     top.add_argument("--version", action="version", version=f"inet {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -235,42 +230,27 @@ def _quiet(command):
 
 
 def angle(text):
-    """An angle in degrees between 0 and 180, both excluded.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """An angle in degrees between 0 and 180, both excluded."""
     return _number(text, lambda x: 0 < x < 180, "an angle above 0 and below 180 degrees")
 
 
 def positive(text):
-    """A finite number greater than zero.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """A finite number greater than zero."""
     return _number(text, lambda x: x > 0, "a positive number")
 
 
 def number(text):
-    """Any finite number.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """Any finite number."""
     return _number(text, lambda x: True, "a finite number")
 
 
 def whole(text):
-    """A whole number from 1 upwards.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """A whole number from 1 upwards."""
     return int(_number(text, lambda x: x >= 1 and x == int(x), "a whole number from 1 upwards"))
 
 
 def port(text):
-    """A whole number that a port of this machine can have, 0 for any that is free.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """A whole number that a port of this machine can have, 0 for any that is free."""
     words = "a whole number from 0 to 65535"
     return int(_number(text, lambda x: 0 <= x <= 65535 and x == int(x), words))
 

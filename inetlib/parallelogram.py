@@ -9,8 +9,6 @@ Inside a quad, BC ~ d1 and BA ~ d2 are its diagonals, BD ~ m13 and CA ~ m24 its 
 Every function takes floats, NumPy arrays or sympy symbols: the formula that runs is the
 formula that the notebooks prove.  Numbers out of range raise ValueError; symbols are not
 checked.
-
-Paper: Sec. 3.1, Sec. 3.2.
 """
 
 from typing import NamedTuple
@@ -27,7 +25,7 @@ class Shape(NamedTuple):
     theta0: float
 
 
-def _lib(*values):
+def library(*values):
     """sympy when a value is symbolic, else numpy: both spell acos, atan2, asinh alike."""
     if any(hasattr(value, "free_symbols") for value in values):
         import sympy
@@ -52,7 +50,7 @@ def _area_factors(lam, mu):
 def _root_area(lam, mu):
     """2 (1 + mu^2) lam sin theta = 2 (1 + lam^2) mu sin theta0."""
     w1, w2, w3, w4 = _area_factors(lam, mu)
-    xp = _lib(lam, mu)
+    xp = library(lam, mu)
     if xp is np:  # root by root: the product overflows first
         return np.sqrt(w1) * np.sqrt(w2) * np.sqrt(w3) * np.sqrt(w4)
     return xp.sqrt(xp.expand(w1 * w2 * w3 * w4))
@@ -66,9 +64,9 @@ def lam_range(mu):
 
     Paper: Eq. (4), Eq. (6), Eq. (9).
     """
-    if _lib(mu) is not np:
+    if library(mu) is not np:
         return abs(mu - 1) / (mu + 1), (mu + 1) / abs(mu - 1)
-    mu = _require_positive("mu", mu)
+    mu = check_positive("mu", mu)
     gap = np.abs(mu - 1)
     with np.errstate(divide="ignore"):
         return gap / (mu + 1), (mu + 1) / gap
@@ -91,7 +89,7 @@ def is_admissible(lam, mu):
 
 def _require_admissible(lam, mu):
     """The ratios as floats (symbols pass through), or ValueError with the range."""
-    if _lib(lam, mu) is not np:
+    if library(lam, mu) is not np:
         return lam, mu
     lam, mu = np.asarray(lam, dtype=float), np.asarray(mu, dtype=float)
     good = np.atleast_1d(is_admissible(lam, mu))
@@ -110,7 +108,7 @@ def _require_admissible(lam, mu):
     return lam[()], mu[()]
 
 
-def _require_positive(name, value):
+def check_positive(name, value):
     """The value as floats, or ValueError unless 0 < value < inf."""
     value = np.asarray(value, dtype=float)
     good = ((value > 0) & np.isfinite(value)).ravel()
@@ -120,9 +118,9 @@ def _require_positive(name, value):
     return value[()]
 
 
-def _require_angle(name, value):
+def check_angle(name, value):
     """The angle as floats (symbols pass through), or ValueError unless 0 < value < pi."""
-    if _lib(value) is not np:
+    if library(value) is not np:
         return value
     value = np.asarray(value, dtype=float)
     good = np.atleast_1d((value > 0) & (value < np.pi)).ravel()
@@ -135,6 +133,13 @@ def _require_angle(name, value):
     return value[()]
 
 
+def check_whole(name, value, least=1):
+    """The value as an int, or ValueError unless it is a whole number >= least."""
+    if not (value >= least and value % 1 == 0):
+        raise ValueError(f"{name} = {value}: a whole number, {least} or more, is wanted")
+    return int(value)
+
+
 def diagonals(a, b, theta):
     """Lengths p = |AC|, q = |BD| of the diagonals, from two sides and the angle between them.
 
@@ -143,10 +148,10 @@ def diagonals(a, b, theta):
 
     Paper: Eq. (1), Eq. (2).
     """
-    xp = _lib(a, b, theta)
+    xp = library(a, b, theta)
     if xp is np:
-        a, b = _require_positive("a", a), _require_positive("b", b)
-    theta = _require_angle("theta", theta)
+        a, b = check_positive("a", a), check_positive("b", b)
+    theta = check_angle("theta", theta)
     half = theta / 2  # a^2 + b^2 - 2ab cos(theta), without the cancellation
     p = xp.sqrt((a - b) ** 2 + 4 * a * b * xp.sin(half) ** 2)
     q = xp.sqrt((a - b) ** 2 + 4 * a * b * xp.cos(half) ** 2)
@@ -161,7 +166,7 @@ def lengths(lam, mu):
     Paper: Sec. 3.1, Eq. (2), Eq. (7), App. A.1.
     """
     lam, mu = _require_admissible(lam, mu)
-    p = _lib(lam, mu).sqrt(2 * (1 + lam**2) / (1 + mu**2))
+    p = library(lam, mu).sqrt(2 * (1 + lam**2) / (1 + mu**2))
     return 1, lam, p, mu * p
 
 
@@ -188,7 +193,7 @@ def angles(lam, mu):
     Paper: Eq. (3), Eq. (8), Lemma 1.
     """
     lam, mu = _require_admissible(lam, mu)
-    xp, root = _lib(lam, mu), _root_area(lam, mu)
+    xp, root = library(lam, mu), _root_area(lam, mu)
     theta = xp.atan2(root, (lam**2 + 1) * (mu - 1) * (mu + 1))
     theta0 = xp.atan2(root, (mu**2 + 1) * (lam - 1) * (lam + 1))
     return theta, theta0
@@ -200,7 +205,7 @@ def half_cosines(lam, mu):
     Paper: Eq. (5), Eq. (10), Lemma 1.
     """
     lam, mu = _require_admissible(lam, mu)
-    root = 2 * mu * _lib(lam, mu).sqrt(2 * (1 + lam**2) * (1 + mu**2))
+    root = 2 * mu * library(lam, mu).sqrt(2 * (1 + lam**2) * (1 + mu**2))
     cos_alpha = (3 * lam**2 * mu**2 + lam**2 + mu**2 - 1) / (lam * root)
     cos_beta = (lam**2 * mu**2 - lam**2 + 3 * mu**2 + 1) / root
     return cos_alpha, cos_beta
@@ -215,7 +220,7 @@ def half_angles(lam, mu):
     Paper: Eq. (5), Eq. (10), Lemma 1.
     """
     lam, mu = _require_admissible(lam, mu)
-    xp, root = _lib(lam, mu), _root_area(lam, mu)
+    xp, root = library(lam, mu), _root_area(lam, mu)
     along, across = 2 * mu**2 * (lam**2 + 1), (mu**2 + 1) * (lam - 1) * (lam + 1)
     return xp.atan2(root, along + across), xp.atan2(root, along - across)
 
@@ -227,8 +232,8 @@ def log_ratios(theta, theta0):
 
     Paper: inverse of Lemma 1 (beyond the paper: B1).
     """
-    theta, theta0 = _require_angle("theta", theta), _require_angle("theta0", theta0)
-    xp = _lib(theta, theta0)
+    theta, theta0 = check_angle("theta", theta), check_angle("theta0", theta0)
+    xp = library(theta, theta0)
     log_lam = xp.asinh(xp.sin(theta) * xp.cos(theta0) / xp.sin(theta0))
     log_mu = xp.asinh(xp.sin(theta0) * xp.cos(theta) / xp.sin(theta))
     return log_lam, log_mu
@@ -243,7 +248,7 @@ def ratios(theta, theta0):
     Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1 (B1).
     """
     log_lam, log_mu = log_ratios(theta, theta0)
-    xp = _lib(log_lam, log_mu)
+    xp = library(log_lam, log_mu)
     return xp.exp(log_lam), xp.exp(log_mu)
 
 
@@ -253,7 +258,7 @@ def rho(lam, mu):
     Paper: Sec. 3.1 in complex form (beyond the paper: B2).
     """
     lam, mu = _require_admissible(lam, mu)
-    xp = _lib(lam, mu)
+    xp = library(lam, mu)
     unit = 1j if xp is np else xp.I
     across = (mu**2 + 1) * (lam - 1) * (lam + 1)
     return (across + unit * _root_area(lam, mu)) / (2 * mu**2 * (lam**2 + 1))
@@ -267,7 +272,7 @@ def diagonal_ratio(rho):
 
     Paper: Thm 7 in complex form (beyond the paper: B2).
     """
-    if _lib(rho) is np:
+    if library(rho) is np:
         rho = np.asarray(rho, dtype=complex)[()]
         if np.any(rho == 1):
             raise ValueError("rho = 1: X_u = X_v, the diagonal Y_u vanishes")
@@ -289,3 +294,94 @@ def from_rho(rho):
         )
     diagonal = diagonal_ratio(rho[()])
     return Shape(abs(diagonal), 1 / abs(rho[()]), np.angle(diagonal), np.angle(rho[()]))
+
+
+# --- The 4-web of a parallelogram as a harmonic pencil, and the half plane of the number rho. ---
+
+
+def directions(rho):
+    """The directions (X_u, Y_v, X_v, Y_u) of the web, complex, counter-clockwise mod pi.
+
+    rho: complex number X_v / X_u.  They are 1, 1 + rho, rho and 1 - rho.
+
+    Paper: Sec. 3.1 (beyond the paper: B10).
+    """
+    return 1 + 0 * rho, 1 + rho, rho, 1 - rho
+
+
+def cross_ratio(a, b, c, d):
+    """(a, b; c, d) of four lines through a point, given by complex directions; -1: harmonic.
+
+    It does not depend on the lengths and signs of the directions.  No two of a, d and of
+    b, c parallel, else ValueError.
+
+    Paper: Sec. 3.1 (beyond the paper: B10).
+    """
+    below = _area(a, d) * _area(b, c)
+    if np.any(below == 0):
+        raise ValueError("two of the lines coincide: the cross ratio is infinite")
+    return _area(a, c) * _area(b, d) / below
+
+
+def _area(a, b):
+    """The oriented area Im(conj(a) b)."""
+    if hasattr(a, "as_real_imag") or hasattr(b, "as_real_imag"):
+        import sympy
+
+        (p, q), (r, s) = (sympy.sympify(z).as_real_imag() for z in (a, b))
+        return sympy.expand(p * s - q * r)
+    return np.imag(np.conj(a) * b)
+
+
+def gaps(lam, mu):
+    """The angles (alpha, theta0 - alpha, pi - theta0 - beta, beta) between neighbouring lines.
+
+    In the order of `directions`, radians, their sum is pi; ValueError for ratios outside the
+    range of parallelograms.
+
+    Paper: Sec. 3.1 (beyond the paper: B10).
+    """
+    alpha, beta = half_angles(lam, mu)
+    _, theta0 = angles(lam, mu)
+    return alpha, theta0 - alpha, library(lam, mu).pi - theta0 - beta, beta
+
+
+def mu_circle(mu):
+    """Centre and radius of the circle of all rho with this mu.
+
+    Paper: Sec. 3.1 (beyond the paper: B2).
+    """
+    return 0 * mu, 1 / mu
+
+
+def lam_circle(lam):
+    """Centre (on the real axis) and radius of the circle of all rho with this lam, not 1.
+
+    For lam = 1 it is the imaginary axis, and this is a ValueError.
+
+    Paper: Sec. 3.1 (beyond the paper: B2).
+    """
+    if np.any(lam == 1):
+        raise ValueError("lam = 1: the imaginary axis, no circle")
+    return (lam**2 + 1) / (lam**2 - 1), 2 * lam / abs(lam**2 - 1)
+
+
+def theta_circle(theta):
+    """Height of the centre above 0 and radius of the circle through -1 and 1 with this theta.
+
+    theta: radians in (0, pi).  Only the arc in the upper half plane counts.
+
+    Paper: Sec. 3.1 (beyond the paper: B2).
+    """
+    xp = library(theta)
+    return -xp.cos(theta) / xp.sin(theta), 1 / xp.sin(theta)
+
+
+def equal_circle():
+    """Centre and radius of the circle of all rho with theta = theta0, that is lam = mu.
+
+    Its mirror image in the imaginary axis holds theta + theta0 = pi.
+
+    Paper: Sec. 3.2 (beyond the paper: B2).
+    """
+    return -1, np.sqrt(2)

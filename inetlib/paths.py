@@ -1,7 +1,4 @@
-"""The files of the command line: what is checked before the work, and how a net is read.
-
-Paper: Sec. 6 (files; beyond the paper).
-"""
+"""The files of the command line: what is checked before the work, and how a net is read."""
 
 import importlib.util
 import os
@@ -10,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from . import cadfiles, io, measure, mesh, surfaces
+from . import io, measure, mesh, surfaces
+from .io import exchange
 
 PACKAGES = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
 
@@ -20,8 +18,6 @@ def check_output(path, force=False, curves=False):
 
     ValueError for an unknown suffix, a missing folder, a file that is there (without force),
     curves where the format has no place for them; ImportError for a missing package.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
     if path.suffix.lower() not in io.WRITERS:
@@ -30,7 +26,7 @@ def check_output(path, force=False, curves=False):
         raise ValueError(f"{path}: curves go into {' '.join(io.WITH_CURVES)} only")
     package = PACKAGES.get(path.suffix.lower())
     if package and importlib.util.find_spec(package) is None:
-        raise ImportError(cadfiles.MISSING[package])
+        raise ImportError(exchange.MISSING[package])
     if path.is_dir():
         raise ValueError(f"{path} is a folder: the name of a file is wanted")
     if not path.parent.is_dir():
@@ -45,8 +41,6 @@ def read_net(path, must_label=True):
     """(V, Q, polygons, notes) of a net's file, labelled where that is possible.
 
     Where it is not: ValueError, or with must_label=False the labels of the file and a note.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     V, Q, polygons = io.net(path)
     try:
@@ -67,8 +61,6 @@ def read_net(path, must_label=True):
 def turned(V, Q, theta, theta0):
     """A note, or none, that u and v seem exchanged: the net would fit the wanted angles theta,
     theta0 (degrees or None) much better with the labels turned by a quarter.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     if theta is None or theta0 is None:
         return []
@@ -84,10 +76,7 @@ def turned(V, Q, theta, theta0):
 
 
 def curves(path, Q, in_obj=False):
-    """The families of curves, for formats that keep them apart, and for OBJ if asked for.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """The families of curves, for formats that keep them apart, and for OBJ if asked for."""
     suffix = Path(path).suffix.lower()
     wanted = suffix in io.WITH_CURVES and (suffix != ".obj" or in_obj)
     return mesh.polylines(Q) if wanted else None
@@ -98,8 +87,6 @@ def profile(path):
 
     Commas, semicolons, tabs or spaces stand between the two; a first row without numbers is a
     heading.  ValueError names the first line that is something else.
-
-    Paper: Sec. 5.3 (any profile; beyond the paper).
     """
     rows = []
     lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()

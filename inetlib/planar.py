@@ -13,7 +13,150 @@ import numpy as np
 from scipy.sparse import bsr_array, coo_array, csr_array, diags_array, kron
 from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, linear, mesh, outline, parallelogram
+from . import mesh, parallelogram, ties
+from .solver import sparse
+
+SAMPLES = 1000  # of an outline given as a function
+
+
+def points(given, name, count=None):
+    """Points of the plane as complex (k,); (k, 2) and (k, 3) arrays are read without their z.
+
+    ValueError that begins with `name` for other shapes, for numbers that are not finite and
+    for another number of points than `count`.
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    given = np.asarray(given)
+    if given.dtype.kind not in "iufc":
+        raise ValueError(f"{name} is of type {given.dtype}: numbers are wanted")
+    if given.ndim == 2 and given.shape[1] in (2, 3) and given.dtype.kind != "c":
+        given = given[:, 0] + 1j * given[:, 1]
+    given = np.atleast_1d(given).astype(complex)
+    if given.ndim != 1:
+        raise ValueError(
+            f"{name} has the shape {given.shape}: complex numbers, or rows of two or three "
+            "coordinates are wanted"
+        )
+    if count is not None and len(given) != count:
+        raise ValueError(f"{name}: {count} points are wanted, not {len(given)}")
+    if not np.isfinite(given).all():
+        raise ValueError(f"{name}: point {np.argmin(np.isfinite(given))} is not finite")
+    return given
+
+
+def closed(given, name="boundary"):
+    """A closed outline without repeated points, counter-clockwise, complex (k,), k >= 3.
+
+    given: points as for `points`, the first may be repeated at the end; or a function of an
+    array of parameters in [0, 1].  ValueError for fewer than three points.
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    z = points(given(np.arange(SAMPLES) / SAMPLES) if callable(given) else given, name)
+    z = z[z != np.roll(z, -1)]
+    if len(z) < 3:
+        raise ValueError(f"{name} has {len(z)} different points: at least three are wanted")
+    return z if np.sum((np.conj(z) * np.roll(z, -1)).imag) > 0 else z[::-1]
+
+
+def read_handles(given, count):
+    """Vertex numbers (k,) and complex points (k,) of handles, both empty for None.
+
+    given: (vertex numbers, points); ValueError for numbers outside 0 ... count - 1, for one
+    that stands twice, and as in `points`.
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    if given is None:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex)
+    if len(given) != 2:
+        raise ValueError(f"handles has {len(given)} parts: (vertex numbers, points) is wanted")
+    held = _check_vertices(given[0], "handles", count)
+    return held, points(given[1], "handles", len(held))
+
+
+def _check_vertices(numbers, name, count):
+    numbers = np.atleast_1d(np.asarray(numbers))
+    if numbers.ndim != 1 or numbers.dtype.kind not in "iu" or not numbers.size:
+        raise ValueError(f"{name}: a list of vertex numbers is wanted")
+    bad = numbers[(numbers < 0) | (numbers >= count)]
+    if bad.size:
+        raise ValueError(f"{name} name vertex {bad[0]}: 0 to {count - 1} are wanted")
+    found, often = np.unique(numbers, return_counts=True)
+    if (often > 1).any():
+        raise ValueError(f"{name} name vertex {found[np.argmax(often)]} twice")
+    return numbers.astype(np.int64)
+
+
+def read_loops(boundary, Q, count):
+    """The outlines as a list of (vertex numbers, closed polyline), empty for None.
+
+    boundary: an outline as for `closed`, which goes to the longest boundary loop of the
+    faces Q (f, 4); or a list of (vertex numbers, outline).
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    if boundary is None:
+        return []
+    if isinstance(boundary, list) and all(_is_pair(part) for part in boundary):
+        return [
+            (_check_vertices(numbers, "boundary", count), closed(curve))
+            for numbers, curve in boundary
+        ]
+    found = mesh.boundary_loops(Q)
+    if not found:
+        raise ValueError("the mesh has no boundary to lay along an outline")
+    return [(max(found, key=len), closed(boundary))]
+
+
+def _is_pair(part):
+    """Whether this is (vertex numbers, outline) and not the two coordinates of a point."""
+    return isinstance(part, tuple) and len(part) == 2 and np.ndim(part[0]) == 1
+
+
+def closest(z, outline):
+    """The points of a closed polyline closest to z, and its unit tangents there: complex (k,).
+
+    At a corner the tangent is perpendicular to the way from the closest point to z.  Of points
+    equally close the one on the first side is taken.
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    step = np.roll(outline, -1) - outline
+    feet, tangents = np.empty((2, len(z)), dtype=complex)
+    size = np.abs(outline - outline[0]).max()
+    for k, point in enumerate(z):
+        part = np.clip(((point - outline) / step).real, 0, 1)
+        found = outline + part * step
+        near = _nearest(found, np.abs(found - point), size)
+        off, corner = point - found[near], part[near] in (0, 1)
+        if corner and abs(off) > ties.TIE * abs(step[near]):
+            along = 1j * off
+        else:  # at a corner itself that of the side that leaves it
+            along = step[(near + (part[near] > 1 - ties.TIE)) % len(step)]
+        feet[k], tangents[k] = found[near], along / abs(along)
+    return feet, tangents
+
+
+def _nearest(feet, away, size):
+    """The index of the nearest foot; of feet apart that are equally near, that of the first."""
+    first = ties.first_smallest(away, size)
+    around = np.abs(feet - feet[first]) < 1e-4 * size  # on the same side, or the next one
+    return np.argmin(np.where(around, away, np.inf))
+
+
+def spread(outline, count):
+    """`count` points at equal distances along a closed polyline, from its first point on.
+
+    Paper: Sec. 3.3 (beyond the paper: B7).
+    """
+    ring = np.append(outline, outline[0])
+    length = np.concatenate([[0], np.cumsum(np.abs(np.diff(ring)))])
+    return np.interp(np.arange(count) / count * length[-1], length, ring)
+
+
+# --- Isogonal nets in the plane by linear algebra: they are discrete holomorphic functions. ---
 
 PENALTY = 1e6  # of the equations; the multipliers make them exact
 POWER = 1.5  # of the vertex count in the weight of smoothness: alike on fine meshes
@@ -64,21 +207,21 @@ def planar_net(Q, theta, theta0, handles=None, boundary=None, start=None, smooth
     """
     K = factor_k(theta, theta0)
     Q, count = _check_mesh(Q)
-    held, places = outline.handles(handles, count)
-    loops = outline.loops(boundary, Q, count)
-    start = None if start is None else outline.points(start, "start", count)
-    _check_enough(held, loops, start, smooth)
-    centre, size = _frame(places, *(curve for _, curve in loops), start)
+    held, places = read_handles(handles, count)
+    rims = read_loops(boundary, Q, count)
+    start = None if start is None else points(start, "start", count)
+    _check_enough(held, rims, start, smooth)
+    centre, size = _frame(places, *(curve for _, curve in rims), start)
     places = (places - centre) / size
-    loops = [(loop, (curve - centre) / size) for loop, curve in loops]
+    rims = [(loop, (curve - centre) / size) for loop, curve in rims]
     start = None if start is None else (start - centre) / size
-    alone = not loops and len(held) > 1
+    alone = not rims and len(held) > 1
     weight = 1.0 if alone else smooth * (count / 1000) ** POWER
     task = _Task(Q, K, held, places, weight)
-    z = _first(task, loops, start)
-    if loops:
-        z = _glide(task, loops, z)
-    return _report(task, loops, z, centre, size)
+    z = _first(task, rims, start)
+    if rims:
+        z = _glide(task, rims, z)
+    return _report(task, rims, z, centre, size)
 
 
 def factor_k(theta, theta0):
@@ -99,16 +242,16 @@ def equations(Q, K):
 
     Paper: Sec. 3.3 (beyond the paper: B7).
     """
-    Q = adjacency.check_quads(Q)
+    Q = mesh.check_quads(Q)
     row = np.tile(np.array([[[K, -1, -K, 1]]], dtype=complex), (len(Q), 1, 1))
-    return linear.rows(row, Q, Q.max() + 1)
+    return sparse.rows(row, Q, Q.max() + 1)
 
 
 # --- input --------------------------------------------------------------------------------
 
 
 def _check_mesh(Q):
-    Q = adjacency.check_quads(Q)
+    Q = mesh.check_quads(Q)
     if not mesh.is_labelled(Q):
         raise ValueError("the faces do not agree on u and v: call mesh.label first")
     count = int(Q.max()) + 1
@@ -159,7 +302,7 @@ class _Task:
         self.fairness = smooth * kron(_fairness(Q, self.count), np.eye(2), format="csr")
         self.penalty = PENALTY * (self.A.T @ self.A)
         self.free = np.setdiff1d(np.arange(self.count), held)
-        self.factor = linear.Factor(_layout(Q, self.count)[self.free])
+        self.factor = sparse.Factor(_layout(Q, self.count)[self.free])
 
     def solve(self, weights, targets):
         """The net that minimises smoothness + sum (z - target)^T W (z - target).
@@ -190,9 +333,9 @@ class _Task:
 
 def _fairness(Q, count):
     """Squared second differences along the polylines, and the twist of the faces: (n, n)."""
-    triples = adjacency.triples(Q)
-    along = linear.rows(np.tile([[[1.0, -2.0, 1.0]]], (len(triples), 1, 1)), triples, count)
-    twist = linear.rows(np.tile([[[1.0, -1.0, 1.0, -1.0]]], (len(Q), 1, 1)), Q, count)
+    triples = mesh.triples(Q)
+    along = sparse.rows(np.tile([[[1.0, -2.0, 1.0]]], (len(triples), 1, 1)), triples, count)
+    twist = sparse.rows(np.tile([[[1.0, -1.0, 1.0, -1.0]]], (len(Q), 1, 1)), Q, count)
     return along.T @ along + 2 * (twist.T @ twist)
 
 
@@ -200,13 +343,13 @@ def _layout(Q, count):
     """Places of the vertices for the ordering: the longest boundary on a circle (Tutte)."""
     graph = _graph(Q, count)
     graph = graph.maximum(graph.T)
-    rim = max(adjacency.boundary_loops(Q), key=len, default=np.arange(3))
+    rim = max(mesh.boundary_loops(Q), key=len, default=np.arange(3))
     z = np.zeros(count, dtype=complex)
     z[rim] = np.exp(2j * np.pi * np.arange(len(rim)) / len(rim))
     inner = np.setdiff1d(np.arange(count), rim)
     if len(inner):
         laplacian = (diags_array(graph.sum(axis=1)) - graph).tocsr()[inner]
-        inverse = linear.factor(laplacian[:, inner].tocsr())
+        inverse = sparse.factor(laplacian[:, inner].tocsr())
         z[inner] = [1, 1j] @ np.stack([inverse(x) for x in _pairs(-laplacian @ z).T.copy()])
     return _pairs(z)
 
@@ -232,7 +375,7 @@ def _first(task, loops, start):
     elif not enough:
         for loop, curve in loops:
             weights[loop] = np.eye(2)
-            targets[loop] = outline.spread(curve, len(loop))
+            targets[loop] = spread(curve, len(loop))
     return task.solve(weights, targets)
 
 
@@ -241,7 +384,7 @@ def _glide(task, loops, z):
     for _ in range(STEPS):
         weights, targets = np.zeros((task.count, 2, 2)), np.zeros(task.count, dtype=complex)
         for loop, curve in loops:
-            targets[loop], tangent = outline.closest(z[loop], curve)
+            targets[loop], tangent = closest(z[loop], curve)
             normal = _pairs(1j * tangent)
             weights[loop] = normal[:, :, None] * normal[:, None, :] + SLIDE * np.eye(2)
         moved, z = z, task.solve(weights, targets)
@@ -268,7 +411,7 @@ def _report(task, loops, z, centre, size):
     if long.min() <= 1e-9 * long.max():
         raise ValueError(f"the net collapses at face {np.argmin(long)}: ask for less")
     residual = float((off / long).max())
-    apart = [np.abs(outline.closest(z[loop], curve)[0] - z[loop]).max() for loop, curve in loops]
+    apart = [np.abs(closest(z[loop], curve)[0] - z[loop]).max() for loop, curve in loops]
     distance = float(size * max(apart)) if loops else np.nan
     flipped, wound = faults(z, task.Q)
     z = centre + size * z
@@ -292,5 +435,5 @@ def faults(z, Q):
     corner = z[Q]
     angle = np.angle((np.roll(corner, 1, 1) - corner) / (np.roll(corner, -1, 1) - corner))
     around = np.bincount(Q.ravel(), (angle % (2 * np.pi)).ravel())
-    around[np.concatenate([np.zeros(0, dtype=int), *adjacency.boundary_loops(Q)])] = 0
+    around[np.concatenate([np.zeros(0, dtype=int), *mesh.boundary_loops(Q)])] = 0
     return np.flatnonzero((angle < 0).sum(axis=1) > 1), np.flatnonzero(around > 3 * np.pi)

@@ -23,10 +23,7 @@ ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on eve
 
 
 def use_style():
-    """Make the project's style the default of this session, whatever the user's own one is.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """Make the project's style the default of this session, whatever the user's own one is."""
     plt.style.use(["default", str(STYLE)])
 
 
@@ -35,8 +32,6 @@ def canvas(panels, width, height, ratios=None):
 
     panels: rows of names as for `matplotlib.pyplot.subplot_mosaic`; width, height in inches;
     ratios: relative widths of the columns.
-
-    Paper: Figs. 1-13 (drawing).
     """
     use_style()
     figure = plt.figure(figsize=(width, height))
@@ -48,10 +43,7 @@ def canvas(panels, width, height, ratios=None):
 
 
 def panel(ax, letter, text=""):
-    """The panel's letter in bold, and a few words, above the axes.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """The panel's letter in bold, and a few words, above the axes."""
     ax.set_title(rf"$\mathbf{{{letter}}}$" + (f"  {text}" if text else ""), loc="left")
 
 
@@ -59,10 +51,7 @@ def panel(ax, letter, text=""):
 
 
 def plane(points):
-    """Points as (..., 2): complex numbers, (..., 2) or (..., 3) arrays (z is dropped).
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """Points as (..., 2): complex numbers, (..., 2) or (..., 3) arrays (z is dropped)."""
     points = np.asarray(points)
     if np.iscomplexobj(points):
         return np.stack([points.real, points.imag], axis=-1)
@@ -70,10 +59,7 @@ def plane(points):
 
 
 def curves(ax, lines, colour, width=1.1, style="-", **options):
-    """Polylines (complex or (k, 2) arrays) as one collection; returns it.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """Polylines (complex or (k, 2) arrays) as one collection; returns it."""
     lines = [plane(line) for line in lines]
     collection = LineCollection(
         lines, colors=colour, linewidths=width, linestyles=style, capstyle="round", **options
@@ -84,10 +70,7 @@ def curves(ax, lines, colour, width=1.1, style="-", **options):
 
 
 def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, **options):
-    """Faces of a planar mesh as one collection; `fill` is a colour or one colour a face.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """Faces of a planar mesh as one collection; `fill` is a colour or one colour a face."""
     collection = PolyCollection(
         plane(V)[faces], facecolors=fill, edgecolors=edge, linewidths=width, **options
     )
@@ -97,10 +80,7 @@ def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, **options):
 
 
 def net(ax, V, Q, families=("u", "v"), width=1.1):
-    """The named families (of u, v, d1, d2) of mesh curves of a planar net, each in its colour.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """The named families (of u, v, d1, d2) of mesh curves of a planar net, each in its colour."""
     if unknown := set(families) - set(COLOURS):
         raise ValueError(f"no family {sorted(unknown)}: there are u, v, d1 and d2")
     for name, lines in mesh.polylines(Q)._asdict().items():
@@ -109,10 +89,7 @@ def net(ax, V, Q, families=("u", "v"), width=1.1):
 
 
 def black_quads(ax, V, Q, fill=FILL, edge=INK, width=0.4):
-    """The inscribed parallelograms of a planar net.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """The inscribed parallelograms of a planar net."""
     board = mesh.checkerboard(V, Q)
     polygons(ax, board.V, board.black, fill, edge, width)
 
@@ -122,8 +99,6 @@ def arc(apex, a, b, radius, samples=40):
 
     apex, a, b: vectors of two or three coordinates, a and b not parallel, else ValueError.
     A right angle is drawn as a corner (3 points).
-
-    Paper: Figs. 1-13 (drawing).
     """
     apex, a, b = (np.asarray(x, dtype=float) for x in (apex, a, b))
     if np.linalg.matrix_rank([a, b]) < 2:
@@ -141,8 +116,6 @@ def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45, s
     """An angle mark at `apex` between the directions a and b, with its label outside the arc.
 
     In space (three coordinates) `camera` projects it.
-
-    Paper: Figs. 1-13 (drawing).
     """
     points = arc(apex, a, b, radius)
     middle = np.asarray(apex) + gap * (points[len(points) // 2] - apex)
@@ -154,10 +127,7 @@ def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45, s
 
 
 def vector(ax, start, end, colour=INK, label="", shift=(0, 0), width=1.6, at=0.5, zorder=4):
-    """An arrow between two points of the plane, and a label beside the fraction `at` of it.
-
-    Paper: Figs. 1-13 (drawing).
-    """
+    """An arrow between two points of the plane, and a label beside the fraction `at` of it."""
     start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
     arrow = {"arrowstyle": "-|>,head_width=0.22,head_length=0.45", "color": colour, "lw": width}
     arrow |= {"shrinkA": 0, "shrinkB": 0, "mutation_scale": 12}
@@ -176,8 +146,6 @@ def camera(azimuth, elevation):
     """An orthographic camera: a function from points (k, 3) to (xy (k, 2), nearness (k,)).
 
     azimuth, elevation: radians, the direction from which the scene is seen; z points up.
-
-    Paper: Figs. 1-13 (drawing).
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     right, up = np.array([-sa, ca, 0]), np.array([-se * ca, -se * sa, ce])
@@ -194,8 +162,6 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
     """One colour a face, darker where the face turns away from the light (both sides alike).
 
     V: (n, 3), faces: (f, 3 or 4) -> RGB (f, 3).
-
-    Paper: Figs. 1-13 (drawing).
     """
     corners = np.asarray(V)[faces]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
@@ -212,8 +178,6 @@ def order(keys):
     keys: (k,) numbers.  Neighbours closer than `ties.TIE` times the range of all, or by the
     rounding of the largest, are ties: which of two computed numbers is larger by its last
     digits differs from machine to machine.
-
-    Paper: Figs. 1-13 (drawing).
     """
     keys = np.asarray(keys, dtype=float)
     close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
@@ -227,8 +191,6 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     face (default `shade`); lines: (points (k, 3), colour, width) triples, cut into segments that
     are sorted with the faces, in front of those they lie on, and lifted by the fraction
     `lift` of the scene's depth.
-
-    Paper: Figs. 1-13 (drawing).
     """
     xy, near = view(V)
     fill = shade(V, faces) if fill is None else fill

@@ -49,8 +49,6 @@ def deviations(nets):
     """Largest deviation of theta and theta0, degrees, over all faces of all nets.
 
     nets: (V, Q, theta, theta0) tuples, angles in radians.  (nan, nan) without nets.
-
-    Paper: Figs. 1-13 (manifest).
     """
     if not nets:
         return np.nan, np.nan
@@ -72,8 +70,6 @@ def save(drawing, folder):
     than the tolerances of `same`, all are replaced, else all are kept.  The new ones are made
     under temporary names first: when anything fails, the old files stay.  `folder` is made
     when only its last part is missing.
-
-    Paper: Figs. 1-13.
     """
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
@@ -147,8 +143,6 @@ def differences(name, one, two):
     Returns a list of words, empty where both folders hold the same figure: "missing",
     "unreadable", or some of "manifest", "data NAME" for each array, "svg" and "png";
     "manifest" also where that of `two` does not have the hash of its data.
-
-    Paper: Figs. 1-13 (files).
     """
     one, two = Path(one), Path(two)
     pairs = [(one / file, two / file) for file in _names(name)]
@@ -175,10 +169,7 @@ def _differences(entries, svg, png, data):
 
 
 def read_data(path):
-    """The arrays of a figure's data file, {name: array}; complex ones are pairs of numbers.
-
-    Paper: Figs. 1-13 (data).
-    """
+    """The arrays of a figure's data file, {name: array}; complex ones are pairs of numbers."""
     with open(path, "rb") as file, np.load(file, allow_pickle=False) as found:
         return {name: found[name] for name in found.files}
 
@@ -201,8 +192,6 @@ def preview(drawing, colours=96):
     """The drawing for a notebook, a small PNG (IPython Image) of a few colours; closes the figure.
 
     For figures that would make a notebook too large; the files of `save` are finer.
-
-    Paper: Figs. 1-13.
     """
     from IPython.display import Image  # only a notebook needs it
 
@@ -215,10 +204,7 @@ def preview(drawing, colours=96):
 
 
 def read_manifest(folder):
-    """The manifest of a folder as a dict, empty when there is none yet.
-
-    Paper: Figs. 1-13 (manifest).
-    """
+    """The manifest of a folder as a dict, empty when there is none yet."""
     path = Path(folder) / "manifest.json"
     if not path.exists():
         return {}

@@ -1,7 +1,4 @@
-"""Making a triangle surface out of a mesh from a file, and saying what had to be done.
-
-Paper: Sec. 6 (files; beyond the paper).
-"""
+"""Making a triangle surface out of a mesh from a file, and saying what had to be done."""
 
 import igl
 import numpy as np
@@ -10,7 +7,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from . import mesh, ties
-from .adjacency import pairs, two_colour
+from .mesh import pairs, two_colour
 
 FLAT = 1e-12  # of the bounding box: an area this small is none
 NEAR = 1e-6  # of the bounding box: vertices closer than this are meant to be one
@@ -25,8 +22,6 @@ def clean(V, F, merge=True):
     (the more frequent side of each piece wins); unused vertices go.  ValueError for edges of
     more than two triangles, vertices where two fans meet, one-sided surfaces, triangles
     without area, and when nothing is left.  Vertex numbers count from 0.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     T, said = triangulate(V, F), []
     if many := sum(len(face) > 3 for face in F):
@@ -108,8 +103,6 @@ def same_place(V, T, tolerance):
     """For each vertex the first one at its place, up to tolerance x the bounding box: (n,).
 
     V: (n, 3); T: the vertices that count, integers of any shape.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     used = np.unique(T)
     radius = tolerance * np.linalg.norm(np.ptp(V[used], axis=0))
@@ -147,8 +140,6 @@ def weld(V, F):
     """The mesh with equal points as one vertex, in the order of their first use: (V, F).
 
     V: (n, 3), F: integers of any shape.  Unused vertices go.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     _, first, place = np.unique(V[F.ravel()] + 0.0, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -162,8 +153,6 @@ def triangulate(V, F):
 
     V: (n, 3), F: (f, k) or a list of faces.  Quads are cut along the shorter diagonal, larger
     polygons ear by ear.  ValueError where no ear is left: no area, or sides that cross.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]

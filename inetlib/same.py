@@ -32,8 +32,6 @@ def text(one, two):
 
     What a text shows is what it promises: 0.25 and 0.26 are the same, 0.25 and 0.27 are not,
     and nor are 7 and 8: whole numbers count as words.
-
-    Paper: Figs. 1-13 (files).
     """
     if one == two:
         return True
@@ -58,8 +56,6 @@ def claims(one, two):
     """Whether two claims of a figure, numbers, words, lists or dicts of them, are the same.
 
     Decimals are so within one unit of the last digit that either of them states.
-
-    Paper: Figs. 1-13 (manifest).
     """
     if isinstance(one, dict) and isinstance(two, dict):
         return one.keys() == two.keys() and all(claims(one[k], two[k]) for k in one)
@@ -73,10 +69,7 @@ def claims(one, two):
 
 
 def data(one, two):
-    """The names of the arrays that differ, or are in one of two dicts of real arrays only.
-
-    Paper: Figs. 1-13 (data).
-    """
+    """The names of the arrays that differ, or are in one of two dicts of real arrays only."""
     size = max((float(np.ptp(x)) for x in one.values() if np.size(x)), default=0.0)
     differ = sorted(one.keys() ^ two.keys())
     for name in sorted(one.keys() & two.keys()):
@@ -90,8 +83,6 @@ def plain_svg(svg):
     """The text of an SVG by matplotlib with names in order of appearance and two decimals.
 
     matplotlib names clips and markers by a hash of numbers with all their digits.
-
-    Paper: Figs. 1-13 (files).
     """
     names = {}
     for match in HASHED.finditer(svg):
@@ -109,10 +100,7 @@ def _short(match):
 
 
 def svg(one, two):
-    """Whether two texts of `plain_svg` show the same: coordinates and colours within tolerance.
-
-    Paper: Figs. 1-13 (files).
-    """
+    """Whether two texts of `plain_svg` show the same: coordinates and colours within tolerance."""
     if one == two:
         return True
     (words, colours), (others, found) = (_parts(t, COLOUR) for t in (one, two))
@@ -131,8 +119,6 @@ def picture(one, two, levels=LEVELS, mean=MEAN):
     """Whether two PNG files, as bytes, look the same.
 
     levels: by which one pixel may differ, of 255; mean: of all pixels, as a part of 1.
-
-    Paper: Figs. 1-13 (files).
     """
     if one == two:
         return True

@@ -3,8 +3,6 @@
 A KeyboardInterrupt that is raised while packages are loaded, or in callbacks, becomes another
 error or gets lost.  So nothing is raised: the handler tidies up, speaks, and ends the process.
 It is installed before the slow imports, and only by programs; `cli.main` installs none.
-
-Paper: Sec. 6 (command line; beyond the paper).
 """
 
 import os
@@ -19,10 +17,7 @@ ENDS = []  # functions without arguments that end what this process has started
 
 
 def main(arguments=None):
-    """`cli.main` for a process of its own: the exit code, or the end by a signal: 130.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """`cli.main` for a process of its own: the exit code, or the end by a signal: 130."""
     words = sys.argv[1:] if arguments is None else arguments
     quiet = words[:1] in (["figures"], ["explore"])
 
@@ -30,7 +25,7 @@ def main(arguments=None):
         return "inet: stopped" + ", nothing was written" * (not quiet and not files.WRITTEN)
 
     listen(sentence)
-    from .cli import main as run  # slow: after the handler
+    from .cli import main as run
 
     code = run(arguments)
     finished()
@@ -42,8 +37,6 @@ def listen(sentence, fresh=False):
 
     sentence() is said on stderr; fresh: on a new line, where a progress bar may be.  A signal
     that was ignored stays so, as for programs in the background of a script.
-
-    Paper: Sec. 6 (command line; beyond the paper).
     """
 
     def stop(number, frame):
@@ -65,19 +58,13 @@ def listen(sentence, fresh=False):
 
 
 def finished():
-    """The work is done: Ctrl-C no longer changes how this process ends.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """The work is done: Ctrl-C no longer changes how this process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
 def held():
-    """Signals wait until the block has ended: it starts what must be known to be ended.
-
-    Paper: Sec. 6 (command line; beyond the paper).
-    """
+    """Signals wait until the block has ended: it starts what must be known to be ended."""
     waiting = []
     handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}
     try:

@@ -2,8 +2,6 @@
 
 The last digits of floating point differ between processors, so numbers that are equal by
 symmetry come out equal on one machine and not on the next.  Here they count as equal.
-
-Paper: Sec. 6 (the same result on every machine; beyond the paper).
 """
 
 import numpy as np
@@ -15,8 +13,6 @@ def at_most(a, b):
     """Whether a <= b, with b a little larger than it is: lengths that tie are at most equal.
 
     a, b: numbers or arrays, not negative.
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     return a <= b * (1 + TIE)
 
@@ -28,8 +24,6 @@ def first_largest(values, scale=0.0):
 
     >>> first_largest([1.0, 3.0 - 1e-15, 3.0])
     1
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     values = np.asarray(values)
     return int(np.argmax(at_most(values.max(), values + TIE * scale)))
@@ -39,8 +33,6 @@ def first_smallest(values, scale=0.0):
     """The index of the first of the smallest numbers; values (k,), not negative.
 
     scale: a size beside which the numbers are rounded, where they may be zero.
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     values = np.asarray(values)
     return int(np.argmax(at_most(values, values.min() + TIE * scale)))
@@ -51,8 +43,6 @@ def nearest_whole(x):
 
     >>> int(nearest_whole(1.5)), int(nearest_whole(2.5 + 1e-12)), int(nearest_whole(-0.4))
     (1, 2, 0)
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     return np.ceil(np.asarray(x) - 0.5 - TIE).astype(np.int64)
 
@@ -62,8 +52,6 @@ def next_multiple(x, step):
 
     >>> next_multiple(30 + 1e-12, 5), next_multiple(31, 5)
     (30.0, 35.0)
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     return float(np.ceil(x / step - TIE) * step)
 
@@ -72,8 +60,6 @@ def ranks(values, tolerance):
     """0 for the smallest numbers, 1 for the next ones, ...: int64 (k,).
 
     Numbers that follow each other by at most `tolerance` share a rank.
-
-    Paper: Sec. 6 (the same result on every machine; beyond the paper).
     """
     values = np.asarray(values)
     order = np.argsort(values, kind="stable")

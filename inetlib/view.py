@@ -55,8 +55,6 @@ def available():
 
     A picture is tried once, in a process of its own: where OpenGL is missing, VTK may end the
     process instead of raising an error.
-
-    Paper: Figs. 7-13 (scenes).
     """
     try:
         _pyvista()
@@ -80,8 +78,6 @@ def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), liv
     as a part of the bounding box's diagonal.  view: azimuth and elevation (radians) of the
     viewer; z points up.  live: for a window.  ImportError without pyvista, RuntimeError
     without OpenGL.
-
-    Paper: Figs. 7-13 (scenes).
     """
     pyvista = _pyvista()
     V, Q = mesh.check_arrays(V, Q)
@@ -124,10 +120,7 @@ def _polylines(pyvista, V, lines):
 
 
 def picture(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5)):
-    """The `scene` drawn off screen: an RGB array (460, 600, 3) of bytes.
-
-    Paper: Figs. 7-13 (scenes).
-    """
+    """The `scene` drawn off screen: an RGB array (460, 600, 3) of bytes."""
     plotter = scene(V, Q, families, colours, width, view)
     try:
         fine = plotter.screenshot(return_img=True).astype(float)
@@ -143,8 +136,6 @@ def show(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live
     session, where the net becomes a page of `explorer` that the browser draws (in its own
     colours and widths, with the families that have curves), or a script with a display.  A
     notebook that a tool runs stores a still picture.
-
-    Paper: Figs. 7-13 (scenes).
     """
     notebook = "ipykernel" in sys.modules
     if live is None:

@@ -7,20 +7,19 @@ import sympy as sp
 
 from inetlib import (
     conformal,
-    freedom,
+    examples,
     loxodrome,
     measure,
     mesh,
     parallelogram,
-    pencil,
     publish,
     reference,
-    singular,
     solver,
     surfaces,
 )
 from inetlib.drawings import beyond_freedom, beyond_labels, beyond_rho, beyond_star
-from inetlib.problem import Weights
+from inetlib.solver import freedom
+from inetlib.solver.problem import Weights
 
 DEGREE = np.pi / 180
 
@@ -36,33 +35,33 @@ def many(count=500, seed=5):
 
 def test_the_cross_ratio_of_the_web_is_minus_one_for_every_rho():
     x, y = sp.Symbol("x", real=True), sp.Symbol("y", positive=True)
-    xu, yv, xv, yu = pencil.directions(x + sp.I * y)
-    assert sp.simplify(pencil.cross_ratio(xu, xv, yv, yu) + 1) == 0
-    xu, yv, xv, yu = pencil.directions(many())
-    assert np.allclose(pencil.cross_ratio(xu, xv, yv, yu), -1, atol=1e-9)
+    xu, yv, xv, yu = parallelogram.directions(x + sp.I * y)
+    assert sp.simplify(parallelogram.cross_ratio(xu, xv, yv, yu) + 1) == 0
+    xu, yv, xv, yu = parallelogram.directions(many())
+    assert np.allclose(parallelogram.cross_ratio(xu, xv, yv, yu), -1, atol=1e-9)
 
 
 def test_the_cross_ratio_knows_neither_lengths_nor_signs_but_the_order():
     lines = 1 + 0j, 2 + 1j, 0.3 + 1j, -1 + 0.4j
-    ratio = pencil.cross_ratio(*lines)
+    ratio = parallelogram.cross_ratio(*lines)
     scaled = (f * z for f, z in zip((-2, 0.3, -1, 5), lines, strict=True))
-    assert pencil.cross_ratio(*scaled) == pytest.approx(ratio)
+    assert parallelogram.cross_ratio(*scaled) == pytest.approx(ratio)
     a, b, c, d = lines
-    assert pencil.cross_ratio(a, b, d, c) == pytest.approx(1 / ratio)
-    assert pencil.cross_ratio(a, c, b, d) == pytest.approx(1 - ratio)
+    assert parallelogram.cross_ratio(a, b, d, c) == pytest.approx(1 / ratio)
+    assert parallelogram.cross_ratio(a, c, b, d) == pytest.approx(1 - ratio)
     slopes = [z.imag / z.real for z in lines]
     p, q, r, s = slopes
     assert ratio == pytest.approx((r - p) * (s - q) / ((s - p) * (r - q)))
     with pytest.raises(ValueError, match="coincide"):
-        pencil.cross_ratio(a, b, c, -2 * a)
+        parallelogram.cross_ratio(a, b, c, -2 * a)
 
 
 def test_the_gaps_are_the_angles_between_the_directions():
     for rho in many(50):
         shape = parallelogram.from_rho(rho)
-        lines = np.array([*pencil.directions(rho), -1])
+        lines = np.array([*parallelogram.directions(rho), -1])
         turned = np.angle(lines[1:] / lines[:-1]) % np.pi
-        gaps = pencil.gaps(shape.lam, shape.mu)
+        gaps = parallelogram.gaps(shape.lam, shape.mu)
         assert np.allclose(gaps, turned, atol=1e-9) and min(gaps) > 0
         assert sum(gaps) == pytest.approx(np.pi)
         assert gaps[0] + gaps[3] == pytest.approx(shape.theta)
@@ -80,9 +79,11 @@ def test_cotangents_of_the_half_angles():
 
 def test_four_shapes_contain_the_regular_three_web():
     for theta, theta0 in ((90, 60), (90, 120), (60, 90), (120, 90)):
-        gaps = np.degrees(pencil.gaps(*parallelogram.ratios(theta * DEGREE, theta0 * DEGREE)))
+        gaps = np.degrees(
+            parallelogram.gaps(*parallelogram.ratios(theta * DEGREE, theta0 * DEGREE))
+        )
         assert sorted(gaps) == pytest.approx([30, 30, 60, 60])
-    gaps = np.degrees(pencil.gaps(1.0, 1.0))
+    gaps = np.degrees(parallelogram.gaps(1.0, 1.0))
     assert gaps == pytest.approx([45] * 4)
 
 
@@ -92,9 +93,9 @@ def test_four_shapes_contain_the_regular_three_web():
 def test_every_point_lies_on_its_four_curves():
     rho = many()
     lam, mu, theta, theta0 = parallelogram.from_rho(rho)
-    for centre, radius in (pencil.mu_circle(mu), pencil.lam_circle(lam)):
+    for centre, radius in (parallelogram.mu_circle(mu), parallelogram.lam_circle(lam)):
         assert np.allclose(np.abs(rho - centre), radius, rtol=1e-8)
-    height, radius = pencil.theta_circle(theta)
+    height, radius = parallelogram.theta_circle(theta)
     assert np.allclose(np.abs(rho - 1j * height), radius, rtol=1e-8)
     assert np.allclose(np.abs(1 - 1j * height), radius)  # the circle passes through 1
     assert np.allclose(np.angle(rho), theta0)
@@ -109,13 +110,13 @@ def test_the_curves_are_proved_with_symbols():
     assert sp.simplify((x - centre) ** 2 + y**2 - radius2) == 0
     height = -re / im  # -cot theta
     assert sp.simplify(x**2 + (y - height) ** 2 - 1 - height**2) == 0
-    assert sp.simplify(pencil.theta_circle(sp.pi / 2)[0]) == 0
+    assert sp.simplify(parallelogram.theta_circle(sp.pi / 2)[0]) == 0
 
 
 def test_equal_angles_lie_on_one_circle_and_nowhere_else():
     rho = many()
     shape = parallelogram.from_rho(rho)
-    centre, radius = pencil.equal_circle()
+    centre, radius = parallelogram.equal_circle()
     inside = np.abs(rho - centre) < radius
     assert np.array_equal(inside, shape.lam < shape.mu) and 0.1 < inside.mean() < 0.9
     for degrees in (20, 60, 135):
@@ -125,7 +126,7 @@ def test_equal_angles_lie_on_one_circle_and_nowhere_else():
 
 def test_lam_one_is_a_line():
     with pytest.raises(ValueError, match="imaginary axis"):
-        pencil.lam_circle(1)
+        parallelogram.lam_circle(1)
 
 
 # --- labels -------------------------------------------------------------------------------
@@ -133,7 +134,7 @@ def test_lam_one_is_a_line():
 
 @pytest.mark.parametrize("valence", range(3, 9))
 def test_vertices_of_even_valence_can_be_labelled(valence):
-    V, Q = singular.vertex(valence, 3)
+    V, Q = examples.vertex(valence, 3)
     V, Q = mesh.check(V, Q)
     d1, d2, _, _ = measure.vectors(V, Q)
     assert (np.cross(d1, d2)[:, 2] > 0).all() and np.sum(Q == 0) == valence
@@ -147,7 +148,7 @@ def test_vertices_of_even_valence_can_be_labelled(valence):
 
 @pytest.mark.parametrize("sides", [3, 4, 5, 8])
 def test_polar_caps_are_labelled_for_any_number_of_sides(sides):
-    V, Q, polygon = singular.polar_cap(sides, 4)
+    V, Q, polygon = examples.polar_cap(sides, 4)
     V, Q = mesh.check(V, Q)
     d1, d2, _, _ = measure.vectors(V, Q)
     assert (np.cross(d1, d2)[:, 2] > 0).all() and mesh.is_labelled(Q)
@@ -158,7 +159,7 @@ def test_polar_caps_are_labelled_for_any_number_of_sides(sides):
 
 
 def test_the_moebius_strip_has_no_orientation():
-    V, Q = singular.moebius_strip(20, 2)
+    V, Q = examples.moebius_strip(20, 2)
     with pytest.raises(ValueError, match="not orientable"):
         mesh.label(Q)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
@@ -175,19 +176,19 @@ def test_a_mirrored_face_has_the_inverse_of_one_ratio():
 
 def test_the_names_disagree_somewhere_exactly_on_refused_meshes():
     for _, _, Q, _ in beyond_labels.gallery().values():
-        labelled, edges = singular.seam(Q)
+        labelled, edges = examples.seam(Q)
         good = beyond_labels.verdict(Q) == "labelled"
         assert good == (len(edges) == 0)
         assert np.array_equal(np.sort(labelled, axis=1), np.sort(Q, axis=1))
         if good:
             assert mesh.is_labelled(labelled)
     shuffled = np.array([np.roll(q, k) for k, q in enumerate(mesh.grid_quads(3, 4))])
-    labelled, edges = singular.seam(shuffled)
+    labelled, edges = examples.seam(shuffled)
     assert len(edges) == 0 and mesh.is_labelled(labelled)
 
 
 @pytest.mark.parametrize(
-    "build", [singular.vertex, singular.polar_cap, lambda a, b: singular.moebius_strip(a, b)]
+    "build", [examples.vertex, examples.polar_cap, lambda a, b: examples.moebius_strip(a, b)]
 )
 def test_counts_out_of_range_are_refused(build):
     for bad in ((2, 3), (6, 0), (5.5, 2)):
@@ -228,7 +229,7 @@ def torus(m, n):
 
 
 def test_ring_meshes_webs_and_tori_have_full_rank():
-    nets = [mesh.polygon_rings(6, 3)[:2], singular.polar_cap(7, 3)[:2]]
+    nets = [mesh.polygon_rings(6, 3)[:2], examples.polar_cap(7, 3)[:2]]
     nets.append(loxodrome.web(surfaces.sphere_profile(), 1.2, 1.0, 10, 6)[:2])
     nets.append(torus(8, 6))
     for V, Q in nets:
@@ -337,7 +338,7 @@ def test_star_angles_do_not_depend_on_half_turns_or_on_the_order_of_faces():
 
 
 def test_star_angles_leave_out_the_rim_and_singular_vertices():
-    V, Q = singular.vertex(6, 3)
+    V, Q = examples.vertex(6, 3)
     star = measure.star_angles(V, mesh.label(Q))
     rim = mesh.boundary_loops(Q)[0]
     assert len(star.vertex) == len(V) - len(rim) - 1 and 0 not in star.vertex

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from inetlib import cli, examples, io, mesh, options, paths, report, solver, surfaces
+from inetlib import cli, examples, io, mesh, options, paths, solver, surfaces
+from inetlib.design import report
 
 ANGLES = "--theta", "60", "--theta0", "45"
 BLUNT = "--theta", "170", "--theta0", "45"

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from inetlib import conformal, constraints, measure, parallelogram
+from inetlib import conformal, measure, parallelogram
+from inetlib.solver import residuals as constraints
 
 RANDOM = np.random.default_rng(4)
 UNIT = np.linalg.qr(RANDOM.normal(size=(6, 3, 3)))[0]

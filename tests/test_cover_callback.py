@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from inetlib import design, examples, measure, runs, solver
+from inetlib import design, examples, measure, solver
+from inetlib.solver import run
 
 ROOF, SADDLE = examples.wavy_roof(12), examples.saddle_with_hole(6)
 CASES = {
@@ -43,7 +44,7 @@ def test_the_start_is_told_first_and_then_every_step_with_the_quads_of_the_net(w
     net, way = ways[name]
     start = cover(name, optimise=False)
     assert way[0][0] is None and np.array_equal(way[0][1], start.V)
-    assert len(way) > 2 and all(isinstance(step, runs.Step) for step, _, _ in way[1:])
+    assert len(way) > 2 and all(isinstance(step, run.Step) for step, _, _ in way[1:])
     assert all(np.array_equal(Q, net.Q) and V.shape == net.V.shape for _, V, Q in way)
 
 
@@ -162,5 +163,5 @@ def test_the_solver_tells_its_steps_alike(ways):
     V, Q = ways["disk"][1][0][1:]
     calls = []
     solver.optimize(V, Q, *np.radians([70, 50]), callback=lambda step, V: calls.append((step, V)))
-    assert calls and all(isinstance(step, runs.Step) for step, _ in calls)
+    assert calls and all(isinstance(step, run.Step) for step, _ in calls)
     assert calls[-1][0].deviation == pytest.approx(merit("disk", calls[-1][1], Q)[1], abs=1e-12)

@@ -6,17 +6,8 @@ import igl
 import numpy as np
 import pytest
 
-from inetlib import (
-    adjacency,
-    clean,
-    design,
-    examples,
-    flatten,
-    measure,
-    mesh,
-    overlay,
-    solver,
-)
+from inetlib import clean, design, examples, measure, mesh, solver
+from inetlib.design import flatten, overlay
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 PAIRS = [(60, 60), (90, 90), (70, 50)]
@@ -87,7 +78,7 @@ def test_own_surfaces_are_covered(make, pair):
     net = cover(surface, pair, count=300)
     check_cover(net, surface, pair)
     assert len(net.Q) == net.report.quads == pytest.approx(300, rel=0.03)
-    assert len(adjacency.boundary_loops(net.Q)) == 1
+    assert len(mesh.boundary_loops(net.Q)) == 1
     assert 0.7 < net.report.covered < 1
     assert net.report.back_max < 5e-3
     assert net.report.seconds.keys() == {"check", "flatten", "grid", "optimise", "report"}
@@ -145,9 +136,9 @@ def test_two_rooms_with_a_narrow_door_give_one_sound_piece():
         return x, (v - 0.5) * (0.06 + np.abs(x) ** 2), 0 * u
 
     net = cover(sheet(60, 10, point), (60, 60), count=150)
-    one, two = adjacency.pairs(net.Q).T // 4
+    one, two = mesh.pairs(net.Q).T // 4
     assert len(np.unique(np.concatenate([one, two]))) == len(net.Q)
-    assert len(adjacency.boundary_loops(net.Q)) == 1  # raises where two quads touch at a vertex
+    assert len(mesh.boundary_loops(net.Q)) == 1  # raises where two quads touch at a vertex
 
 
 def test_quads_as_reference_and_large_coordinates():
@@ -213,8 +204,8 @@ def test_a_saddle_with_a_hole_is_covered_by_a_closed_net(pair, direction):
     surface = examples.saddle_with_hole(12)
     net = cover(surface, pair, count=300, direction=direction)
     check_cover(net, surface, pair)
-    edges = len(adjacency.pairs(net.Q)) + np.sum(adjacency.twins(net.Q) < 0)
-    assert len(adjacency.boundary_loops(net.Q)) == 2
+    edges = len(mesh.pairs(net.Q)) + np.sum(mesh.twins(net.Q) < 0)
+    assert len(mesh.boundary_loops(net.Q)) == 2
     assert len(net.V) - edges + len(net.Q) == 0
     assert (net.report.winding[1] == 0) == (direction == 0)
 
@@ -245,7 +236,7 @@ def test_the_plain_net_of_a_ring_follows_its_boundaries():
     surface = examples.saddle_with_hole(12)
     net = cover(surface, (60, 60), count=300, boundary="plain")
     check_cover(net, surface, (60, 60))
-    loops = adjacency.boundary_loops(net.Q)
+    loops = mesh.boundary_loops(net.Q)
     assert {len(loop) for loop in loops} == {abs(net.report.winding[0])}  # u-lines, no steps
     outer = max(loops, key=lambda loop: np.ptp(net.V[loop, 0]))
     radius = np.linalg.norm(net.V[outer][:, :2], axis=1)

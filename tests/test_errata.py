@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from inetlib import conformal, forms, loxodrome, measure, mesh, parallelogram, surfaces
+from inetlib import conformal, loxodrome, measure, mesh, parallelogram, surfaces
 from inetlib.drawings import fig09
 
 DEG = np.pi / 180
@@ -241,11 +241,11 @@ def test_e5_the_conjugate_family_needs_the_other_helicoid():
 
     u, v, t = sp.symbols("u v t", real=True)
     for helicoid, shear in ((printed, sp.sin(2 * t) / 2), (corrected, 0)):
-        E, F, G = forms.first_form(conjugate_with(helicoid, t), u, v)
+        E, F, G = surfaces.first_form(conjugate_with(helicoid, t), u, v)
         assert sp.simplify(E - G) == 0
         assert sp.simplify(F - shear) == 0
-    assert sp.simplify(forms.mean_curvature(conjugate_with(corrected, t), u, v)) == 0
-    bent = forms.mean_curvature(conjugate_with(printed, 1.0), u, v)
+    assert sp.simplify(surfaces.mean_curvature(conjugate_with(corrected, t), u, v)) == 0
+    bent = surfaces.mean_curvature(conjugate_with(printed, 1.0), u, v)
     assert abs(float(bent.subs({u: 1, v: 0}))) > 0.1
     asked = np.arccos(1 / np.sqrt(5)), np.pi / 4
     for degrees, off in ((15, 13), (30, 31)):
@@ -264,13 +264,13 @@ def test_e5_the_conjugate_family_needs_the_other_helicoid():
 def test_e15_only_on_surfaces_of_revolution_are_isothermal_nets_principal():
     u, v, t = sp.symbols("u v t", real=True)
     for surface in (surfaces.CYLINDER, surfaces.SPHERE, surfaces.CATENOID):
-        assert sp.simplify(forms.first_form(surface, u, v)[1]) == 0
-        assert sp.simplify(forms.second_form(surface, u, v)[1]) == 0  # principal: F = M = 0
-    E, F, G = forms.first_form(surfaces.HELICOID, u, v)
+        assert sp.simplify(surfaces.first_form(surface, u, v)[1]) == 0
+        assert sp.simplify(surfaces.second_form(surface, u, v)[1]) == 0  # principal: F = M = 0
+    E, F, G = surfaces.first_form(surfaces.HELICOID, u, v)
     assert sp.simplify(E - G) == sp.simplify(F) == 0  # isothermal, and yet
-    L, M, N = (sp.simplify(x) for x in forms.second_form(surfaces.HELICOID, u, v))
+    L, M, N = (sp.simplify(x) for x in surfaces.second_form(surfaces.HELICOID, u, v))
     assert (L, M**2, N) == (0, 1, 0)  # asymptotic, so the diagonals are the principal curves
-    M = forms.second_form(surfaces.conjugate(t), u, v)[1]
+    M = surfaces.second_form(surfaces.conjugate(t), u, v)[1]
     assert sp.simplify(M**2 - sp.sin(t) ** 2) == 0
 
 

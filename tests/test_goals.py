@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inetlib import goals, parallelogram
+from inetlib import parallelogram
+from inetlib.solver import goal as goals
 
 ANGLE = st.floats(0.2, 2.9)
 LOG = st.floats(-0.8, 0.8)

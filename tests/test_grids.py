@@ -5,18 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from inetlib import (
-    constraints,
-    grids,
-    linear,
-    matrixfree,
-    measure,
-    mesh,
-    parallelogram,
-    runs,
-    solver,
-    surfaces,
-)
+from inetlib import measure, mesh, parallelogram, solver, surfaces
+from inetlib.solver import grids, run, sparse
+from inetlib.solver import residuals as constraints
 
 ANGLES = [(60, 60), (60, 45), (80, 110), (130, 100)]
 
@@ -31,15 +22,15 @@ def blocks(m, n, seed=0):
     """A rough grid's (P, f, A) at arbitrary ratios."""
     noise = np.random.default_rng(seed).normal(size=(m + 1, n + 1, 3))
     P = np.moveaxis(freeform(m, n) + 0.1 / max(m, n) * noise, 2, 0)
-    return P, *matrixfree.equations(P, 0.1, -0.2)
+    return P, *sparse.equations(P, 0.1, -0.2)
 
 
-def sparse(P):
+def assembled(P):
     """(f, J) of the same grid from the constraints, rows in pairs face by face."""
     Q = mesh.grid_quads(P.shape[1] - 1, P.shape[2] - 1)
     V = np.moveaxis(P, 0, 2).reshape(-1, 3)
     f, jacobian = constraints.log_ratios(V[Q].reshape(-1, 12))
-    J = linear.rows(jacobian, linear.coordinates(Q), V.size)
+    J = sparse.rows(jacobian, sparse.coordinates(Q), V.size)
     return (f - [0.1, -0.2]).ravel(), J
 
 
@@ -51,32 +42,32 @@ def flat(x):
 @pytest.mark.parametrize(("m", "n"), [(2, 2), (7, 4)])
 def test_the_blocks_are_the_jacobian_of_the_constraints(m, n):
     P, f, A = blocks(m, n)
-    residual, J = sparse(P)
+    residual, J = assembled(P)
     np.testing.assert_allclose(flat(f), residual, atol=1e-13)
     random = np.random.default_rng(1)
     x, y = random.normal(size=P.shape), random.normal(size=f.shape)
-    np.testing.assert_allclose(flat(matrixfree.times(A, x)), J @ flat(x), rtol=1e-10, atol=1e-9)
-    there = flat(matrixfree.transposed(A, y))
+    np.testing.assert_allclose(flat(sparse.times(A, x)), J @ flat(x), rtol=1e-10, atol=1e-9)
+    there = flat(sparse.transposed(A, y))
     np.testing.assert_allclose(there, J.T @ flat(y), rtol=1e-10, atol=1e-9)
 
 
 @pytest.mark.parametrize(("m", "n"), [(12, 9), (30, 50)])
 def test_conjugate_gradients_find_the_smallest_step(m, n):
     P, f, A = blocks(m, n)
-    residual, J = sparse(P)
-    y, count = matrixfree.solve(A, f, tolerance=1e-9)
+    residual, J = assembled(P)
+    y, count = sparse.solve(A, f, tolerance=1e-9)
     assert 0 < count < 100
     S = (J @ J.T).tocsc()
     np.testing.assert_allclose(S @ flat(y), residual, atol=1e-8 * np.linalg.norm(residual))
-    d, few = matrixfree.step(A, f)
+    d, few = sparse.step(A, f)
     assert few < count
-    best = J.T @ linear.factor(S)(residual)
+    best = J.T @ sparse.factor(S)(residual)
     assert np.linalg.norm(flat(d) - best) < 0.01 * np.linalg.norm(best)
 
 
 def test_nothing_to_do_takes_no_iteration():
     _, f, A = blocks(5, 6)
-    y, count = matrixfree.solve(A, np.zeros_like(f))
+    y, count = sparse.solve(A, np.zeros_like(f))
     assert count == 0
     assert not y.any()
 
@@ -85,7 +76,7 @@ def test_nothing_to_do_takes_no_iteration():
 def test_the_preconditioner_is_symmetric_and_positive_definite(stretch):
     m, n = 5, 4
     P = np.moveaxis(freeform(m, n, stretch), 2, 0)
-    apply = matrixfree.preconditioner(matrixfree.equations(P, 0, 0)[1])
+    apply = sparse.preconditioner(sparse.equations(P, 0, 0)[1])
     columns = [apply(e.reshape(2, m, n)).ravel() for e in np.eye(2 * m * n)]
     M = np.stack(columns, axis=1)
     np.testing.assert_allclose(M, M.T, atol=1e-5 * np.abs(M).max())
@@ -95,10 +86,10 @@ def test_the_preconditioner_is_symmetric_and_positive_definite(stretch):
 def test_the_preconditioner_nearly_inverts_the_system_of_a_uniform_grid():
     m, n = 24, 17  # squares, where the stencil is the same everywhere
     i, j = np.meshgrid(np.arange(m + 1.0), np.arange(n + 1.0), indexing="ij")
-    A = matrixfree.equations(np.stack([i, j, 0 * i]), 0, 0)[1]
+    A = sparse.equations(np.stack([i, j, 0 * i]), 0, 0)[1]
     wave = np.sin(np.pi * 3 * np.arange(1, m + 1) / (m + 1))[:, None]
     y = np.stack([wave * np.sin(np.pi * 5 * np.arange(1, n + 1) / (n + 1))] * 2)
-    again = matrixfree.preconditioner(A)(matrixfree.times(A, matrixfree.transposed(A, y)))
+    again = sparse.preconditioner(A)(sparse.times(A, sparse.transposed(A, y)))
     inside = np.s_[:, 2:-2, 2:-2]
     error = np.linalg.norm((again - y)[inside]) / np.linalg.norm(y)
     assert error < 0.1
@@ -107,8 +98,8 @@ def test_the_preconditioner_nearly_inverts_the_system_of_a_uniform_grid():
 @pytest.mark.parametrize(("size", "stretch"), [(20, 1), (80, 1), (80, 6)])
 def test_the_number_of_iterations_does_not_grow_with_the_grid(size, stretch):
     P = np.moveaxis(freeform(size, size + 3, stretch), 2, 0)
-    f, A = matrixfree.equations(P, 0, 0)
-    assert matrixfree.solve(A, f)[1] < 40
+    f, A = sparse.equations(P, 0, 0)
+    assert sparse.solve(A, f)[1] < 40
 
 
 def test_levels_double_and_end_at_the_grid():
@@ -151,7 +142,7 @@ def test_all_faces_have_the_wanted_angles(theta, theta0, m, n, stretch):
 def test_the_result_is_told_like_that_of_the_solver():
     seen = grids.optimize(freeform(60, 61), lam=1.2, mu=0.9)
     assert (seen.lam, seen.mu) == pytest.approx((1.2, 0.9))
-    assert all(isinstance(step, runs.Step) for step in seen.history)
+    assert all(isinstance(step, run.Step) for step in seen.history)
     assert seen.history[0].kind == "start"
     assert seen.history[-1].kind == "angle"
     assert seen.history[-1].deviation < 1e-9
@@ -189,7 +180,7 @@ def test_a_hopeless_start_is_reported_and_not_made_worse():
 
 
 def test_a_refinement_that_leads_nowhere_is_tried_again_and_reported(monkeypatch):
-    monkeypatch.setattr(matrixfree, "step", lambda A, f: (np.zeros((3, 1, 1)), 0))
+    monkeypatch.setattr(sparse, "step", lambda A, f: (np.zeros((3, 1, 1)), 0))
     result = grids.optimize(freeform(130, 120), 1.0, 1.2, coarse=12)
     assert not result.converged
     assert "astray" in result.message

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from inetlib import conformal, goals, guided, measure, mesh, parallelogram, solver
+from inetlib import conformal, measure, mesh, parallelogram, solver
+from inetlib.solver import goal as goals
+from inetlib.solver import guided
 
 RIGHT, SIXTY = np.pi / 2, np.pi / 3
 

@@ -10,7 +10,8 @@ import igl
 import numpy as np
 import pytest
 
-from inetlib import cadfiles, io, mesh, repair
+from inetlib import io, mesh, repair
+from inetlib.io import exchange
 
 THIRD = 1 / 3  # needs all its digits
 CUBE = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
@@ -291,7 +292,7 @@ def test_a_missing_package_is_one_sentence(tmp_path, web, monkeypatch, suffix):
     def importing(module):
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
-    monkeypatch.setattr(cadfiles.importlib, "import_module", importing)
+    monkeypatch.setattr(exchange.importlib, "import_module", importing)
     with pytest.raises(ImportError, match=r"pip install inetlib\[(view|cad)\]"):
         io.write(tmp_path / f"n{suffix}", *web[:2])
     assert not list(tmp_path.iterdir())

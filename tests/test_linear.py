@@ -5,7 +5,9 @@ import pytest
 from scipy.sparse import csr_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
-from inetlib import constraints, linear, mesh, surfaces
+from inetlib import mesh, surfaces
+from inetlib.solver import residuals as constraints
+from inetlib.solver import sparse
 
 RANDOM = np.random.default_rng(5)
 
@@ -13,7 +15,7 @@ RANDOM = np.random.default_rng(5)
 def system(V, Q):
     """The matrix of a smallest step, with the centres of the faces."""
     _, jacobian = constraints.log_ratios(V[Q].reshape(-1, 12))
-    J = linear.rows(jacobian, linear.coordinates(Q), V.size)
+    J = sparse.rows(jacobian, sparse.coordinates(Q), V.size)
     S = J @ J.T
     return V[Q].mean(axis=1), S + 1e-9 * S.diagonal().mean() * eye_array(S.shape[0])
 
@@ -30,11 +32,11 @@ def test_rows_put_the_blocks_where_the_index_says():
     for f in range(4):
         for q in range(2):
             dense[2 * f + q, index[f]] = jacobian[f, q]
-    np.testing.assert_array_equal(linear.rows(jacobian, index, 5).toarray(), dense)
+    np.testing.assert_array_equal(sparse.rows(jacobian, index, 5).toarray(), dense)
 
 
 def test_coordinates_of_vertices():
-    assert linear.coordinates([[2, 0]]).tolist() == [[6, 7, 8, 0, 1, 2]]
+    assert sparse.coordinates([[2, 0]]).tolist() == [[6, 7, 8, 0, 1, 2]]
 
 
 @pytest.mark.parametrize("columns", [(), (3,)])
@@ -42,10 +44,10 @@ def test_coordinates_of_vertices():
 @pytest.mark.parametrize("dissect", [False, True])
 @pytest.mark.parametrize("narrow", [0, 1000])
 def test_factor_solves(mesh_of, narrow, dissect, columns, monkeypatch):
-    monkeypatch.setattr(linear, "NARROW", narrow)
+    monkeypatch.setattr(sparse, "NARROW", narrow)
     points, S = system(*mesh_of())
     b = RANDOM.normal(size=(S.shape[0], *columns))
-    x = linear.factor(S, linear.nested_dissection(points, S) if dissect else None)(b)
+    x = sparse.factor(S, sparse.nested_dissection(points, S) if dissect else None)(b)
     assert x.shape == b.shape
     np.testing.assert_allclose(S.toarray() @ x, b, atol=1e-8)
 
@@ -54,10 +56,10 @@ def test_factor_solves(mesh_of, narrow, dissect, columns, monkeypatch):
 @pytest.mark.parametrize("many", [10, 10**6])
 @pytest.mark.parametrize("mesh_of", [lambda: surfaces.freeform_patch(8, 6), lambda: hexagon(6)])
 def test_a_factor_orders_once_and_solves_again_and_again(mesh_of, many, narrow, monkeypatch):
-    monkeypatch.setattr(linear, "MANY", many)
-    monkeypatch.setattr(linear, "NARROW", narrow)
+    monkeypatch.setattr(sparse, "MANY", many)
+    monkeypatch.setattr(sparse, "NARROW", narrow)
     points, S = system(*mesh_of())
-    solver, orders = linear.Factor(points), []
+    solver, orders = sparse.Factor(points), []
     for scale in (1, 2, 3):
         b = RANDOM.normal(size=(S.shape[0], 2))
         np.testing.assert_allclose(scale * (S @ solver(scale * S)(b)), b, atol=1e-8)
@@ -69,7 +71,7 @@ def test_a_factor_orders_once_and_solves_again_and_again(mesh_of, many, narrow, 
 def test_a_narrow_matrix_that_is_not_positive_is_solved_too():
     A = diags_array([np.full(9, 2.0), np.full(10, 1.0), np.full(9, 2.0)], offsets=[-1, 0, 1])
     b = RANDOM.normal(size=10)
-    np.testing.assert_allclose(A.tocsr() @ linear.factor(A.tocsr())(b), b, atol=1e-12)
+    np.testing.assert_allclose(A.tocsr() @ sparse.factor(A.tocsr())(b), b, atol=1e-12)
 
 
 def fill(S, order):
@@ -82,7 +84,7 @@ def fill(S, order):
 @pytest.mark.parametrize("mesh_of", [lambda: surfaces.freeform_patch(36, 36), lambda: hexagon(14)])
 def test_dissection_is_a_permutation_that_keeps_the_factor_sparse(mesh_of):
     points, S = system(*mesh_of())
-    order = linear.nested_dissection(points, S)
+    order = sparse.nested_dissection(points, S)
     rows = np.arange(S.shape[0])
     np.testing.assert_array_equal(np.sort(order), rows)
     np.testing.assert_array_equal(order[1::2], order[::2] + 1)  # pairs stay together
@@ -92,12 +94,12 @@ def test_dissection_is_a_permutation_that_keeps_the_factor_sparse(mesh_of):
 def test_dissection_puts_the_middle_of_a_chain_last():
     chain = diags_array([np.ones(99), np.full(100, 4.0), np.ones(99)], offsets=[-1, 0, 1]).tocsr()
     points = np.arange(100.0)[:, None]
-    order = linear.nested_dissection(points, chain)
+    order = sparse.nested_dissection(points, chain)
     assert order[-1] == 49
-    three = linear.nested_dissection(points, csr_array(kron(chain, np.ones((3, 3)))))
+    three = sparse.nested_dissection(points, csr_array(kron(chain, np.ones((3, 3)))))
     np.testing.assert_array_equal(three[::3], 3 * order)
 
 
 def test_dissection_of_points_in_one_place_is_still_a_permutation():
-    order = linear.nested_dissection(np.zeros((50, 3)), csr_array(np.ones((50, 50))))
+    order = sparse.nested_dissection(np.zeros((50, 3)), csr_array(np.ones((50, 50))))
     np.testing.assert_array_equal(np.sort(order), np.arange(50))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from inetlib import loxodrome, measure, mesh, parallelogram, rings, surfaces
+from inetlib import loxodrome, measure, mesh, parallelogram, surfaces
 
 DEG = np.pi / 180
 SURFACES = {
@@ -256,12 +256,12 @@ def test_the_lam_equation_is_empty_at_theta0_90_and_has_no_root_at_theta_90():
 def test_residuals_vanish_at_the_rings_of_their_webs():
     vase, args = SURFACES["vase"], (1.2, 0.9, 24)
     exact = loxodrome.web(vase, *args)
-    assert abs(rings.residual(vase, *args, exact.t[3], exact.t[4])) < 1e-14
+    assert abs(loxodrome.residual(vase, *args, exact.t[3], exact.t[4])) < 1e-14
     for equation in ("lam", "mu"):
         t = loxodrome.web(vase, *args, method="paper", equation=equation).t
-        assert abs(rings.residual(vase, *args, t[3], t[4], equation)) < 1e-10
+        assert abs(loxodrome.residual(vase, *args, t[3], t[4], equation)) < 1e-10
     with pytest.raises(ValueError, match="equation = 'nu'"):
-        rings.residual(vase, *args, 0.1, 0.2, "nu")
+        loxodrome.residual(vase, *args, 0.1, 0.2, "nu")
 
 
 # --- other nets of the web ----------------------------------------------------------------

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import sympy
 
-from inetlib import conformal, exactness, measure, mesh, outline, planar
+from inetlib import conformal, measure, mesh, planar
 from inetlib.drawings import beyond_planar
 
 ANGLES = [(90, 90), (60, 60), (60, 45), (100, 40)]
@@ -208,21 +208,21 @@ def test_two_outlines_of_an_annulus_and_a_function():
 
 
 def test_closest_points_and_spreads():
-    square = outline.closed([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])
-    feet, tangents = outline.closest(np.array([0.3 - 1j, 2 + 0.25j, 3 + 3j]), square)
+    square = planar.closed([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])
+    feet, tangents = planar.closest(np.array([0.3 - 1j, 2 + 0.25j, 3 + 3j]), square)
     np.testing.assert_allclose(feet, [0.3, 1 + 0.25j, 1 + 1j])
     np.testing.assert_allclose(tangents[:2], [1, 1j])
-    np.testing.assert_allclose(outline.spread(square, 8)[:4], [0, 0.5, 1, 1 + 0.5j])
-    np.testing.assert_array_equal(outline.closed(square[::-1]), square[::-1][::-1])
+    np.testing.assert_allclose(planar.spread(square, 8)[:4], [0, 0.5, 1, 1 + 0.5j])
+    np.testing.assert_array_equal(planar.closed(square[::-1]), square[::-1][::-1])
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_of_feet_equally_near_the_first_is_taken(seed):
-    square = outline.closed(np.array([0, 1, 1 + 1j, 1j]))
+    square = planar.closed(np.array([0, 1, 1 + 1j, 1j]))
     t = np.linspace(0.05, 0.45, 9)
     points = np.concatenate([t * (1 + 1j), 1 - t + 1j * t, [0.5 + 0.5j, 0, 1 + 0j, 1 + 1j]])
     noise = np.random.default_rng(seed).standard_normal((2, len(points)))
-    feet, tangents = outline.closest(points + 1e-13 * (noise[0] + 1j * noise[1]), square)
+    feet, tangents = planar.closest(points + 1e-13 * (noise[0] + 1j * noise[1]), square)
     np.testing.assert_allclose(feet, [*t, *(1 - t), 0.5, 0, 1, 1 + 1j], atol=1e-12)
     np.testing.assert_allclose(tangents[:19], 1, atol=1e-12)
     np.testing.assert_allclose(tangents[19:], [1, 1j, -1], atol=1e-12)  # of the side that leaves
@@ -336,8 +336,8 @@ def test_the_leading_error_is_right_and_the_rest_of_fourth_order(name):
     call, first, third = (sympy.lambdify(Z, f.diff(Z, k), "numpy") for k in (0, 1, 3))
     rest = []
     for h in (1, 1 / 2, 1 / 4):
-        found = exactness.cell_errors(call, z, h * u, h * v)
-        said = exactness.leading_errors(first(z), third(z), h * u, h * v)
+        found = conformal.cell_errors(call, z, h * u, h * v)
+        said = conformal.leading_errors(first(z), third(z), h * u, h * v)
         rest.append(np.abs(np.subtract(found, said)))
         assert np.all(np.abs(found) > 1e-4 * h**2) or name == "z^2"
     if name == "z^2":
@@ -346,14 +346,14 @@ def test_the_leading_error_is_right_and_the_rest_of_fourth_order(name):
         order = np.log2(np.array(rest)[:-1] / np.array(rest)[1:])
         assert np.abs(order[:, 0] - 4).max() < 0.15
         assert order[:, 1].min() > 3.85  # 6 for 1/z
-    kappa = exactness.kappa(f, Z)
+    kappa = conformal.kappa(f, Z)
     assert kappa == wanted if wanted is not None else kappa.has(Z)
 
 
 def test_bad_cells_and_maps():
     with pytest.raises(ValueError, match="not parallel"):
-        exactness.cell_errors(np.exp, 0, 1, 2)
+        conformal.cell_errors(np.exp, 0, 1, 2)
     with pytest.raises(ValueError, match="not conformal"):
-        exactness.leading_errors(0, 1, 1, 1j)
+        conformal.leading_errors(0, 1, 1, 1j)
     with pytest.raises(ValueError, match="does not depend"):
-        exactness.kappa(sympy.Integer(3), Z)
+        conformal.kappa(sympy.Integer(3), Z)

@@ -16,9 +16,9 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tools"))
 
 MODULES = sorted(
-    ".".join(path.relative_to(ROOT / "inetlib").with_suffix("").parts)
-    for path in (ROOT / "inetlib").rglob("*.py")
-    if not path.name.startswith("_")
+    ".".join(path.relative_to(ROOT / "inetlib").with_suffix("").parts).removesuffix(".__init__")
+    for path in (ROOT / "inetlib").glob("**/*.py")
+    if path.parent.name != "inetlib" or path.stem != "__init__"
 )
 
 
@@ -146,14 +146,12 @@ def test_identifiers_are_ascii():
             assert path.read_text(encoding="utf-8").isascii(), path
 
 
-def test_every_public_name_has_a_docstring_that_names_its_source():
+def test_every_public_name_has_a_docstring():
     names = public_functions()
     assert len(names) > 40
     for name, value in names:
         doc = inspect.getdoc(value)
         assert doc, name
-        if inspect.isfunction(value):
-            assert doc.splitlines()[-1].startswith("Paper: "), name
 
 
 def test_no_module_and_no_function_outgrows_a_glance():

@@ -19,7 +19,8 @@ import psutil
 import pytest
 
 import inetlib
-from inetlib import cli, examples, files, io, report, start
+from inetlib import cli, examples, files, io, start
+from inetlib.design import report
 
 ROOT = Path(__file__).resolve().parent.parent
 ANGLES = "--theta", "60", "--theta0", "60"

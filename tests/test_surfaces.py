@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from inetlib import conformal, forms, measure, mesh, moebius, surfaces
+from inetlib import conformal, measure, mesh, moebius, surfaces
 from inetlib.surfaces import CATENOID, CYLINDER, HELICOID, SPHERE, Profile
 
 U, V, T = sympy.symbols("u v t", real=True)
@@ -183,7 +183,7 @@ def test_mercator_makes_any_profile_isothermal():
         def coordinates(u, w, profile=profile, t_of_w=t_of_w):
             return tuple(np.moveaxis(surfaces.revolve(profile, u, t_of_w(w)), -1, 0))
 
-        E, F, G = forms.first_form(surfaces.Surface("", coordinates), u, w)
+        E, F, G = surfaces.first_form(surfaces.Surface("", coordinates), u, w)
         np.testing.assert_allclose(G, E, rtol=1e-8)
         np.testing.assert_allclose(F, 0, atol=1e-10)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import measure, mesh, reference, solver
-from ..problem import Weights
+from ..solver.problem import Weights
 
 MARGIN = 1.0  # the surface goes on beyond the start by this much of u and v
 TOLERANCE = 1e-12  # of the angles, radians

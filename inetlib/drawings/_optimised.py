@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.ticker import MaxNLocator
 
 from .. import measure, mesh, plot
-from ..problem import Weights
+from ..solver.problem import Weights
 
 # A tenth of the printed weights: with those the paper's formulation ends degrees off the
 # angles (Fig. 13) in the printed number of steps.  A boundary held tighter pinches corners.

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from .. import measure, mesh, plot, publish, reference, solver, surfaces, ties
-from ..problem import Weights
+from ..solver.problem import Weights
 from . import _optimised
 
 CELLS = 12

@@ -5,7 +5,7 @@ Paper: Sec. 4.1 (labels; beyond the paper: B9).
 
 import numpy as np
 
-from .. import mesh, plot, publish, reference, singular, solver
+from .. import examples, mesh, plot, publish, reference, solver
 from . import _optimised
 
 DEGREE = np.pi / 180
@@ -26,12 +26,12 @@ def gallery():
     found = {}
     for k in range(6):
         found[f"A{k}"] = (f"{k + 3}-gon", *mesh.polygon_rings(k + 3, 2))
-        found[f"B{k}"] = (f"valence {k + 3}", *singular.vertex(k + 3, 3), None)
+        found[f"B{k}"] = (f"valence {k + 3}", *examples.vertex(k + 3, 3), None)
     for k, sides in enumerate((3, 5, 7)):
-        found[f"C{k}"] = (f"cap, {sides} sides", *singular.polar_cap(sides, 3))
+        found[f"C{k}"] = (f"cap, {sides} sides", *examples.polar_cap(sides, 3))
     for k, turns in ((3, 3), (4, 4)):
         found[f"C{k}"] = (f"{turns} turns", *mesh.polygon_rings(turns, 1)[:2], None)
-    found["C5"] = ("Moebius strip", *singular.moebius_strip(26, 2), None)
+    found["C5"] = ("Moebius strip", *examples.moebius_strip(26, 2), None)
     return found
 
 
@@ -58,7 +58,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
 
     Paper: Sec. 4.1 (labels; beyond the paper: B9).
     """
-    meshes = {"D": mesh.polygon_rings(8, 6), "E": singular.polar_cap(20, 7)}
+    meshes = {"D": mesh.polygon_rings(8, 6), "E": examples.polar_cap(20, 7)}
     found = {}
     for letter, (V, Q, polygon) in meshes.items():
         V = _domed(V, *((dome, 0.1) if letter == "D" else (2 * dome, 0.0)))
@@ -120,7 +120,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
 
 def _small(ax, V, Q, polygon):
     """A mesh with its edges in the colours of the families, and where these disagree."""
-    labelled, bad = singular.seam(Q)
+    labelled, bad = examples.seam(Q)
     flat = np.ptp(V[:, 2]) == 0
     points = plot.plane(V) if flat else plot.camera(*np.radians([-75, 32]))(V)[0]
     if flat:

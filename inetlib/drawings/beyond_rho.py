@@ -6,7 +6,7 @@ Paper: Sec. 3.1 (beyond the paper: B2, B10).
 import numpy as np
 from matplotlib.patheffects import withStroke
 
-from .. import parallelogram, pencil, plot, publish
+from .. import parallelogram, plot, publish
 from ._parallelogram import net, text_at
 
 COLOURS = plot.COLOURS
@@ -44,8 +44,8 @@ def draw(rho=0.95 + 1.15j):
     plot.panel(axes["A"], "A", r"the half plane of $\rho=X_v/X_u=e^{i\theta_0}/\mu$")
     plot.panel(axes["B"], "B", "its quad")
     plot.panel(axes["C"], "C", "its 4-web")
-    lines = pencil.directions(rho)
-    ratio = pencil.cross_ratio(lines[0], lines[2], lines[1], lines[3])
+    lines = parallelogram.directions(rho)
+    ratio = parallelogram.cross_ratio(lines[0], lines[2], lines[1], lines[3])
     claims = {name: round(float(x), 9) for name, x in shape._asdict().items()}
     return publish.Drawing(
         name="beyond_rho",
@@ -86,9 +86,9 @@ def half_plane(ax, rho):
     """
     ax.set(xlim=(-WIDE, WIDE), ylim=(-0.34, HIGH), autoscale_on=False)
     for ratio in RATIOS:
-        _circle(ax, *pencil.mu_circle(ratio), "u")
+        _circle(ax, *parallelogram.mu_circle(ratio), "u")
     for ratio in (x for x in RATIOS if x != 1):
-        _circle(ax, *pencil.lam_circle(ratio), "d1")
+        _circle(ax, *parallelogram.lam_circle(ratio), "d1")
     for angle in ANGLES:
         _ray(ax, angle * DEGREE, 0.6)
         _arc(ax, angle * DEGREE, 0.6)
@@ -112,7 +112,7 @@ def _ray(ax, theta0, width):
 
 
 def _arc(ax, theta, width):
-    height, radius = pencil.theta_circle(theta)
+    height, radius = parallelogram.theta_circle(theta)
     start = np.arctan2(-height, np.sqrt(max(radius**2 - height**2, 0)))
     z = 1j * height + radius * np.exp(1j * np.linspace(start, np.pi - start, 241))
     plot.curves(ax, [z], COLOURS["d2"], width, zorder=2 if width < 1 else 4)
@@ -120,7 +120,7 @@ def _arc(ax, theta, width):
 
 def _equal(ax):
     """The nets with theta = theta0."""
-    centre, radius = pencil.equal_circle()
+    centre, radius = parallelogram.equal_circle()
     z = centre + radius * np.exp(1j * np.linspace(0, np.pi, 241))
     plot.curves(ax, [z], EQUAL, 1.3, (0, (4, 2)), zorder=3)
     _words(ax, centre + radius * np.exp(1.97j), r"$\theta=\theta_0$", EQUAL)
@@ -142,11 +142,11 @@ def _special(ax):
 def _chosen(ax, rho):
     """The point rho and its four curves, with their values at the edges of the window."""
     lam, mu, theta, theta0 = parallelogram.from_rho(rho)
-    _circle(ax, *pencil.mu_circle(mu), "u", 2)
+    _circle(ax, *parallelogram.mu_circle(mu), "u", 2)
     _ray(ax, theta0, 2)
     _arc(ax, theta, 2)
     if abs(lam - 1) > 1e-9:
-        _circle(ax, *pencil.lam_circle(lam), "d1", 2)
+        _circle(ax, *parallelogram.lam_circle(lam), "d1", 2)
     else:
         plot.curves(ax, [[0, 4j]], COLOURS["d1"], 2, zorder=4)
     ax.plot(rho.real, rho.imag, "o", color=plot.INK, ms=7, mec="white", zorder=9)
@@ -195,14 +195,14 @@ def web(ax, rho):
 
     Paper: Sec. 3.1 (beyond the paper: B10).
     """
-    lines = np.array(pencil.directions(rho))
+    lines = np.array(parallelogram.directions(rho))
     lines = lines / np.abs(lines) * np.where(lines.imag < 0, -1, 1)
     names = {"u": "$X_u$", "d2": "$Y_v$", "v": "$X_v$", "d1": "$Y_u$"}
     for z, (family, name) in zip(lines, names.items(), strict=True):
         plot.curves(ax, [[-0.35 * z, z]], COLOURS[family], 1.8)
         text_at(ax, 1.17 * z, name, 9)
     shape = parallelogram.from_rho(rho)
-    gaps = np.array(pencil.gaps(shape.lam, shape.mu)) / DEGREE
+    gaps = np.array(parallelogram.gaps(shape.lam, shape.mu)) / DEGREE
     ends = np.append(lines, -1)
     for a, b, gap in zip(ends[:-1], ends[1:], gaps, strict=True):
         middle = np.sqrt(a * b) * np.sign(np.sqrt(a * b).imag)

@@ -1,7 +1,4 @@
-"""Angles at the vertices of isogonal nets: how far from theta and theta0, and how fast they come.
-
-Paper: Sec. 4.1 (beyond the paper: angles at vertices).
-"""
+"""Angles at the vertices of isogonal nets: how far off, and how fast they come."""
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
@@ -29,8 +26,6 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, sizes=SIZES):
     web on a sphere; an optimised freeform roof of sizes[0] x sizes[0] quads, refined by a
     spline and optimised again.  All have exactly the two angles (radians) in their faces, except
     under 1/z, which has them up to O(m^-2).
-
-    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
     """
     maps = {
         "z2": (lambda z: (z + 1.2) ** 2, 0),
@@ -48,10 +43,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, sizes=SIZES):
 
 
 def refined(theta, theta0, sizes=SIZES):
-    """An optimised roof and its refinements: [(V, Q) for m in sizes], m x m quads.
-
-    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
-    """
+    """An optimised roof and its refinements: [(V, Q) for m in sizes], m x m quads."""
     m = sizes[0]
     V, Q = surfaces.freeform_patch(m, m)
     near = reference.mesh(*surfaces.freeform_patch(64, 64))
@@ -72,8 +64,6 @@ def deviation(V, Q, theta, theta0, unit=False, part=1.0):
 
     The largest ones, or those that `part` of the vertices stay below; unit as in
     `measure.star_angles`.
-
-    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
     """
     star = measure.star_angles(V, Q, unit)
     off = np.abs([star.theta - theta, star.theta0 - theta0])
@@ -81,10 +71,7 @@ def deviation(V, Q, theta, theta0, unit=False, part=1.0):
 
 
 def table(found, theta, theta0, unit=False):
-    """{name: (sizes, 2) degrees}: `deviation` of all nets; 0.9 of the vertices of the roof.
-
-    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
-    """
+    """{name: (sizes, 2) degrees}: `deviation` of all nets; 0.9 of the vertices of the roof."""
     return {
         name: np.array(
             [deviation(*n, theta, theta0, unit, MOST if name == "roof" else 1.0) for n in row]
@@ -99,8 +86,6 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     theta, theta0: radians.  The largest deviation of theta0 over the inner vertices, for the
     roof the one that 90 % of them stay below.  Full lines: chords over two edges; dotted: unit
     tangents.  Returns a `publish.Drawing`.
-
-    Paper: Sec. 4.1 (beyond the paper: angles at vertices).
     """
     figure, axes = plot.canvas([["A", "B"], ["C", "B"]], 7.4, 4.1, [1, 1.15])
     found = nets(theta, theta0)

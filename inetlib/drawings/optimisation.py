@@ -4,8 +4,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-from .. import adjacency, measure, plot, reference, solver, surfaces
-from ..problem import Weights
+from .. import measure, mesh, plot, reference, solver, surfaces
+from ..solver.problem import Weights
 from . import _optimised
 
 CAMERA = -62, 42
@@ -26,8 +26,6 @@ def energies(theta=np.pi / 2):
     Returns (figure, lines): a panel for the start and each of `ENERGIES`, and a table as
     lists [name, steps, area ratio, unfairness, distance from the surface, from its boundary],
     distances as fractions of the bounding box's diagonal.
-
-    Paper: Sec. 6.3 (energies).
     """
     V, Q = surfaces.freeform_patch()
     near = reference.mesh(V, Q)
@@ -48,9 +46,9 @@ def energies(theta=np.pi / 2):
 
 def _numbers(V, Q, near):
     """Area ratio, second differences (root mean square), mean distance from surface and rim."""
-    left, middle, right = V[adjacency.triples(Q).T]
+    left, middle, right = V[mesh.triples(Q).T]
     unfair = np.sqrt(np.mean(np.sum((2 * middle - left - right) ** 2, axis=1)))
-    rim = adjacency.boundary_loops(Q)[0]
+    rim = mesh.boundary_loops(Q)[0]
     apart = V - near.closest(V)[0], V[rim] - near.boundary(V[rim])[0]
     means = (np.linalg.norm(d, axis=1).mean() / near.diagonal for d in apart)
     return measure.quality(V, Q).area_ratio, unfair / near.diagonal, *means
@@ -61,8 +59,6 @@ def convergence(results):
 
     Residuals of different formulations are different things; the angles are not.  Dots mark
     steps with shape energies.  Returns the figure.
-
-    Paper: Sec. 6.3 (convergence).
     """
     plot.use_style()
     figure, pair = plt.subplots(1, 2, figsize=(7.4, 2.8))

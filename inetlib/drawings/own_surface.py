@@ -1,7 +1,4 @@
-"""A net on a surface of one's own: panels by size and by planarity, and a motif in every quad.
-
-Paper: Sec. 7 (beyond the paper).
-"""
+"""A net on a surface of one's own: panels by size and by planarity, and a motif in every quad."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -13,20 +10,14 @@ MAP = "cividis"
 
 
 def sizes(V, Q):
-    """The side of a square as large as each face, over the mean one: (f,).
-
-    Paper: Sec. 6 (quality; beyond the paper).
-    """
+    """The side of a square as large as each face, over the mean one: (f,)."""
     d1, d2, _, _ = measure.vectors(V, Q)
     side = np.sqrt(np.linalg.norm(np.cross(d1, d2), axis=1) / 2)
     return side / side.mean()
 
 
 def warps(V, Q):
-    """How far each face is from being planar: distance of the diagonals over their mean length.
-
-    Paper: Sec. 6 (quality; beyond the paper).
-    """
+    """How far each face is from being planar: distance of the diagonals over their mean length."""
     d1, d2, _, _ = measure.vectors(V, Q)
     normal = np.cross(d1, d2)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -39,8 +30,6 @@ def panels(V, Q, curves, azimuth=-62, elevation=42):
 
     curves: placed ones, a list of (f, k, 3); azimuth, elevation: the camera, degrees.
     Returns the figure.
-
-    Paper: Sec. 7 (beyond the paper).
     """
     figure, axes = plot.canvas([["size", "planarity", "motif"]], 7.4, 3.1)
     view = plot.camera(*np.radians([azimuth, elevation]))

@@ -17,8 +17,6 @@ def web(ax, view, net, families=("u", "v", "d1", "d2"), width=0.8):
 
     view: a `plot.camera` that looks from above;
     families: of u, v, d1 and d2; width: points.
-
-    Paper: Sec. 5.3 (drawing).
     """
     Q = net.Q[facing(view, net.V, net.Q)]
     fill = plot.shade(net.V, Q, "white", depth=0.2)
@@ -26,10 +24,7 @@ def web(ax, view, net, families=("u", "v", "d1", "d2"), width=0.8):
 
 
 def black_quads(ax, view, net, width=0.7):
-    """The inscribed parallelograms and the edges of a web's quads; arguments as in `web`.
-
-    Paper: Sec. 5.3 (drawing).
-    """
+    """The inscribed parallelograms and the edges of a web's quads; arguments as in `web`."""
     Q = net.Q[facing(view, net.V, net.Q)]
     board = mesh.checkerboard(net.V, Q)
     points, black = np.concatenate([net.V, board.V]), board.black + len(net.V)
@@ -44,8 +39,6 @@ def paint(ax, view, net, outside, fill, lines):
     """The front faces `outside` = (V, faces), the plain back faces, lines, the upper rim.
 
     fill: a colour for each of the front faces; lines: see `plot.scene`.
-
-    Paper: Sec. 5.3 (drawing).
     """
     V, faces = outside
     back = net.Q[~facing(view, net.V, net.Q)]
@@ -61,20 +54,14 @@ def paint(ax, view, net, outside, fill, lines):
 
 
 def facing(view, V, Q):
-    """Whether each face shows its outside to the camera: boolean (f,).
-
-    Paper: Sec. 5.3 (drawing).
-    """
+    """Whether each face shows its outside to the camera: boolean (f,)."""
     a, b = (view(x)[0] for x in measure.vectors(V, Q)[:2])
     size = np.linalg.norm(a, axis=1) * np.linalg.norm(b, axis=1)
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] > ties.TIE * size  # edge on: not shown
 
 
 def lines(V, Q, families, width):
-    """Edges and diagonals of the faces Q that belong to the families, each once, for a scene.
-
-    Paper: Sec. 5.3 (drawing).
-    """
+    """Edges and diagonals of the faces Q that belong to the families, each once, for a scene."""
     pieces = []
     for name in families:
         ends = np.concatenate([Q[:, pair] for pair in SLOTS[name]])

@@ -6,7 +6,7 @@ import io
 import numpy as np
 
 from .. import measure, publish
-from ..problem import PAPER
+from ..solver.problem import PAPER
 from . import _optimised, fig12, fig13
 
 # F, #var, #cons, residual, iterations, seconds per iteration

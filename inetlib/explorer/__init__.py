@@ -3,8 +3,6 @@
 `choices` knows what can be asked for, `nets` makes it, `session` is one explorer without a
 page, `look` and `plates` say how things are drawn; `scene`, `page`, `app` and `serve` are its
 page, and need the packages of the extra `view`.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
 """
 
 __all__ = ["person", "show", "show_net", "still"]

@@ -1,7 +1,4 @@
-"""One browser tab: the page's state, kept in step with a `session.Session`.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""One browser tab: the page's state, kept in step with a `session.Session`."""
 
 import asyncio
 import time
@@ -42,10 +39,7 @@ class App:
             self.server.trigger(call.__name__)(call)
 
     def close(self):
-        """Forget the tab: end its search, free its memory, once.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """Forget the tab: end its search, free its memory, once."""
         self.session.stop()
         for task in (self._task, self._search):
             if task is not None:
@@ -85,10 +79,7 @@ class App:
     # --- what the page does ---------------------------------------------------------------
 
     def arrive(self, query, dark, aspect):
-        """A browser has opened the page: take the link's values, and show the net.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """A browser has opened the page: take the link's values, and show the net."""
         self.state.dark, self.aspect = bool(dark), float(aspect)
         self._dress()
         self.session.choice, problems = choices.parse(str(query), self.session.choice)
@@ -120,17 +111,11 @@ class App:
             self.state.alert = " \u00b7 ".join(problems[:4])
 
     def run(self):
-        """Begin the search again.
-
-        Paper: Sec. 6 (explorer).
-        """
+        """Begin the search again."""
         self._soon(True)
 
     def stop(self):
-        """Stop the search: the best net so far is kept.
-
-        Paper: Sec. 6 (explorer).
-        """
+        """Stop the search: the best net so far is kept."""
         self.session.stop()
         self.state.progress = "stopping \u2026"
         if self.session.run is None and self._search is not None:  # it has not begun
@@ -138,10 +123,7 @@ class App:
             self.state.searching = False
 
     def save(self, suffix, camera):
-        """The bytes of a file, for the browser to keep; None, and a message, if there is none.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """The bytes of a file, for the browser to keep; None, and a message, if there is none."""
         try:
             x, y, z = (a - b for a, b in zip(camera["position"], camera["focalPoint"], strict=True))
             sight = (atan2(y, x), atan2(z, hypot(x, y))) if hypot(x, y) > 1e-6 * abs(z) else ()
@@ -154,32 +136,20 @@ class App:
     # --- the camera -----------------------------------------------------------------------
 
     def fit(self, aspect=None):
-        """See the whole net, from where it is seen by default.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """See the whole net, from where it is seen by default."""
         kind = "cover" if self.session.given else self.session.choice.kind
         self._look(scene.sight(kind, self.session.V), aspect)
 
     def refit(self, aspect):
-        """The first scene is there: see the whole net from where it was to be seen.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """The first scene is there: see the whole net from where it was to be seen."""
         self._look(self.sight, aspect)
 
     def from_above(self, aspect=None):
-        """See the whole net from above.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """See the whole net from above."""
         self._look(scene.VIEWS["plane"], aspect)
 
     def from_side(self, aspect=None):
-        """See the whole net from the side.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """See the whole net from the side."""
         self._look((-60.0, 15.0), aspect)
 
     def _look(self, sight, aspect=None):

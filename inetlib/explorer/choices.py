@@ -1,8 +1,6 @@
 """What the explorer can be asked for: one record of checked values, and the same as a link.
 
 Angles are degrees here, as on the command line and on the page.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
 """
 
 from dataclasses import dataclass, fields, replace
@@ -115,10 +113,7 @@ SHOWN = "families", "parallelograms", "shade"
 
 
 def limits(choice, name):
-    """The `Range` of a number: the same for all choices, but for the angle of bending.
-
-    Paper: Sec. 5.1, Sec. 5.2 (explorer).
-    """
+    """The `Range` of a number: the same for all choices, but for the angle of bending."""
     rolled = name == "bend" and choice.surface == "rolled"
     return RANGES[name]._replace(high=350) if rolled else RANGES[name]
 
@@ -129,8 +124,6 @@ def changed(choice, **values):
     Values may be texts, as in a link.  Refused values leave the choice as it was.  With the
     lock on, one angle takes the other along; turning it on makes theta0 equal to theta.  A
     bending that a newly chosen surface does not have is lowered to its largest.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     good, problems = {}, []
     for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending
@@ -225,10 +218,7 @@ def _switch(name, value):
 
 
 def link(choice):
-    """The choice as URL parameters: what its kind uses, and what is shown.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
-    """
+    """The choice as URL parameters: what its kind uses, and what is shown."""
     names = ("kind", "theta", "theta0", "lock", *USES[choice.kind], *SHOWN)
     return urlencode([(name, _text(getattr(choice, name))) for name in names], safe=",")
 
@@ -242,10 +232,7 @@ def _text(value):
 
 
 def parse(query, choice=None):
-    """(a choice, sentences on what is wrong) of URL parameters, with or without the `?`.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
-    """
+    """(a choice, sentences on what is wrong) of URL parameters, with or without the `?`."""
     pairs, problems = parse_qsl(query.removeprefix("?")[:4000], keep_blank_values=True), []
     values = dict(pairs)
     problems += [f"{_short(name)} is no parameter" for name in values if name not in NAMES]

@@ -1,7 +1,4 @@
-"""What a net looks like in the explorer: its cells, curves, colours, and pictures of it.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""What a net looks like in the explorer: its cells, curves, colours, and pictures of it."""
 
 import io
 from itertools import pairwise
@@ -39,8 +36,6 @@ def shades(off):
     """The colours of deviations (degrees) on a logarithmic scale: bytes (k, 3).
 
     Below 10^DECADES[0] degrees the faces are nearly white.
-
-    Paper: Sec. 4.1 (explorer).
     """
     low, high = DECADES
     part = (np.log10(np.maximum(off, 1e-300)) - low) / (high - low)
@@ -50,10 +45,7 @@ def shades(off):
 
 
 def scale():
-    """The colours and names of the scale of `shades`: [(colour, words), ...].
-
-    Paper: Sec. 4.1 (explorer).
-    """
+    """The colours and names of the scale of `shades`: [(colour, words), ...]."""
     powers = np.arange(DECADES[0] - 1, DECADES[1] + 1)
     words = [f"{10.0**p:g}\u00b0" for p in powers]
     words[0] = f"< {words[1]}"
@@ -62,10 +54,7 @@ def scale():
 
 
 def line_width(quads):
-    """The width of the curves in pixels: thinner where there are more quads.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """The width of the curves in pixels: thinner where there are more quads."""
     return 3 if quads < 200 else 2 if quads < 3000 else 1
 
 
@@ -88,8 +77,6 @@ def layout(Q, count, families, parallelograms=False):
     With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
     Diagonals run through the mean of the four corners, on the surface that is filled: where
     they are shown, the quads become triangles around it.
-
-    Paper: Sec. 2, Sec. 4.1 (explorer).
     """
     sides = np.stack([Q, np.roll(Q, -1, axis=1)], axis=2)
     edges, around = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
@@ -121,18 +108,12 @@ def layout(Q, count, families, parallelograms=False):
 
 
 def points(V, layout):
-    """The vertices of a layout: V and the means.
-
-    Paper: Sec. 2, Sec. 4.1 (explorer).
-    """
+    """The vertices of a layout: V and the means."""
     return np.concatenate([V, *(V[k].mean(axis=1) for k in layout.means)])
 
 
 def fills(layout, palette, shade=None):
-    """RGB bytes of all cells, first the quads: (f + t, 3); shade: one colour a face, or None.
-
-    Paper: Sec. 2 (explorer).
-    """
+    """RGB bytes of all cells, first the quads: (f + t, 3); shade: one colour a face, or None."""
     quads, triangles = len(layout.quads), len(layout.triangles)
     if shade is not None:
         return np.concatenate([shade[:quads], np.repeat(shade, 4, axis=0)[:triangles]])
@@ -145,8 +126,6 @@ def picture(V, Q, choice, shade, camera, form):
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
     choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     with matplotlib.rc_context():
         plot.use_style()

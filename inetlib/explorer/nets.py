@@ -1,7 +1,4 @@
-"""The nets of the explorer: constructed ones, those found by optimisation, and their code.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""The nets of the explorer: constructed ones, those found by optimisation, and their code."""
 
 import cmath
 from math import radians
@@ -52,10 +49,7 @@ class Made(NamedTuple):
 
 
 def construct(choice):
-    """The net of a choice that needs no optimisation; ValueError where there is none.
-
-    Paper: Sec. 3.3, Sec. 5 (explorer).
-    """
+    """The net of a choice that needs no optimisation; ValueError where there is none."""
     makers = {"plane": _plane, "isothermal": _isothermal, "revolution": _revolution}
     return makers[choice.kind](choice)
 
@@ -64,8 +58,6 @@ def find(choice, surface=None, callback=None):
     """The net of a choice that needs an optimisation; callback(step, V, Q) may return False.
 
     surface: `io.Surface`, that of the file.  The callback's first step is None: the start.
-
-    Paper: Sec. 6 (explorer).
     """
     angles = radians(choice.theta), radians(choice.theta0)
     if choice.kind == "freeform":
@@ -97,8 +89,6 @@ def grid(choice, name):
     """(origin, edge) of the sheared grid that fills the disk of a map or surface.
 
     Both are rounded, so that the code is short and makes the same net.
-
-    Paper: Sec. 3.3 (explorer).
     """
     centre, radius = DISKS[name]
     lam, mu = parallelogram.ratios(radians(choice.theta), radians(choice.theta0))
@@ -162,10 +152,7 @@ def _rolled(choice):
 
 
 def bending(choice):
-    """The curvature that bends the sheet by the chosen angle from one side to the other.
-
-    Paper: Sec. 5.1 (explorer).
-    """
+    """The curvature that bends the sheet by the chosen angle from one side to the other."""
     _, edge = grid(choice, "rolled")
     mu = parallelogram.ratios(radians(choice.theta), radians(choice.theta0))[1]
     width = edge * (choice.m + choice.n * abs(cmath.exp(1j * radians(choice.theta0)).real) / mu)
@@ -186,8 +173,6 @@ def code(choice, path="surface.obj"):
     """Three lines of Python that make the net: V and Q.
 
     path: of the surface's file.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     angles = f"np.radians({_exact_text(choice.theta)}), np.radians({_exact_text(choice.theta0)})"
     writers = {

@@ -1,7 +1,4 @@
-"""The explorer in a notebook: live for a person, a picture where a tool runs the notebook.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""The explorer in a notebook: live for a person, a picture where a tool runs the notebook."""
 
 import asyncio
 import base64
@@ -45,8 +42,6 @@ def show(height=640, live=None, **values):
     values: those of `choices.Choice`, angles in degrees; ValueError for what is no such value.
     live: True, False, or by default True where a person runs the notebook.  Returns a `Live`
     page, or a still IPython Image.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     session = Session()
     if problems := session.change(**values):
@@ -70,8 +65,6 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
     V: (n, 3), Q: (f, 4); families: names; sight: azimuth and elevation of the still picture,
     radians; picture: another one, PNG bytes.  ValueError for arrays that are no net and for
     names of no family.
-
-    Paper: Sec. 3-6 (explorer; beyond the paper).
     """
     session = Session(net=(V, Q))
     if problems := session.change(families=families):
@@ -84,20 +77,14 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
 
 
 def still(picture, width=None):
-    """A still IPython Image of PNG bytes, shown so many pixels wide.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """A still IPython Image of PNG bytes, shown so many pixels wide."""
     from IPython.display import Image
 
     return Image(data=picture, format="png", width=width)
 
 
 def person():
-    """Whether somebody runs this notebook by hand: a kernel of a Jupyter server has a name.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """Whether somebody runs this notebook by hand: a kernel of a Jupyter server has a name."""
     return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
 
 

@@ -1,7 +1,4 @@
-"""What the page of the explorer holds: controls, view, numbers.  Widgets only, no logic.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""What the page of the explorer holds: controls, view, numbers.  Widgets only, no logic."""
 
 from contextlib import contextmanager
 from importlib.resources import files
@@ -33,8 +30,6 @@ def build(server, plotter, given=False):
     """The page of a server: its layout is stored there; returns the view of the plotter.
 
     given: the net came from Python, so that nothing is chosen but what is shown.
-
-    Paper: Sec. 3-6 (explorer).
     """
     theme = ("dark ? 'dark' : 'light'",)
     with VAppLayout(server, theme=theme, style=("palette",)):

@@ -1,7 +1,4 @@
-"""The two sides of the explorer's page: what is chosen, and what is said of the net.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""The two sides of the explorer's page: what is chosen, and what is said of the net."""
 
 from trame.widgets import html
 from trame.widgets import vuetify3 as v3
@@ -69,10 +66,7 @@ def _slider(name, label, low, high, step, **options):
 
 
 def controls(given=False):
-    """What is chosen; of a given net only what is shown.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """What is chosen; of a given net only what is shown."""
     if not given:
         _kind()
         _angles()
@@ -208,10 +202,7 @@ def _shown():
 
 
 def numbers():
-    """The parallelogram, and what there is to say of the net.
-
-    Paper: Sec. 3.1, Sec. 4.1 (explorer).
-    """
+    """The parallelogram, and what there is to say of the net."""
     html.H2("Parallelogram")
     html.Div(v_html="parallelogram_svg", classes="ex-plate")
     with html.Div(classes="ex-note ex-ratios out-ratios"):

@@ -1,8 +1,6 @@
 """Small drawings of the explorer as SVG text: the parallelogram, two histograms, a profile.
 
 Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2.
-
-Paper: Sec. 3.1, Sec. 4.1 (explorer).
 """
 
 import numpy as np
@@ -20,8 +18,6 @@ def parallelogram(theta, theta0):
 
     Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
     medial lines, in those of u and v.
-
-    Paper: Sec. 3.1 (explorer).
     """
     shape = corners(theta, theta0)
     low = shape.real.min() + 1j * shape.imag.min()
@@ -50,8 +46,6 @@ def histograms(theta, theta0, asked):
     """How far both angles are off, face by face: two histograms with one scale.
 
     theta, theta0: deviations in degrees, (f,); asked: the two angles in degrees.
-
-    Paper: Sec. 4.1 (explorer).
     """
     reach = _nice(max(np.abs(theta).max(), np.abs(theta0).max(), EXACT))
     parts = []
@@ -83,10 +77,7 @@ def _nice(x):
 
 
 def profile(radii):
-    """The meridian with its radii, the axis at the left.
-
-    Paper: Sec. 5.3 (explorer).
-    """
+    """The meridian with its radii, the axis at the left."""
     from ..surfaces import spline_profile
 
     box = 110, 150
@@ -111,19 +102,13 @@ def _place(radius, height, scale, box):
 
 
 def short(x, digits=2):
-    """A number with so many digits, in few characters: 0.25, 4.3e-13, with a true minus.
-
-    Paper: Sec. 4.1 (explorer).
-    """
+    """A number with so many digits, in few characters: 0.25, 4.3e-13, with a true minus."""
     text = f"{x:.{digits}g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
     return text.replace("-", "\u2212")
 
 
 def numbers(n, shown):
-    """`session.Numbers` as the page shows them: a dict of texts; shown: the choice they are of.
-
-    Paper: Sec. 4.1 (explorer).
-    """
+    """`session.Numbers` as the page shows them: a dict of texts; shown: the choice they are of."""
     return {
         "quads": f"{n.quads:,}".replace(",", "\u2009"),
         "lam": f"{n.lam:.5g}",

@@ -1,7 +1,4 @@
-"""The net as a pyvista scene that the browser draws: no OpenGL is needed where Python runs.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""The net as a pyvista scene that the browser draws: no OpenGL is needed where Python runs."""
 
 import numpy as np
 from matplotlib.colors import to_rgb
@@ -43,10 +40,7 @@ class Scene:
         self._known = self._layout = None
 
     def show(self, V, Q, choice, dark=False, shade=None):
-        """Put a net into the scene; shade: RGB bytes a face (f, 3), or None.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """Put a net into the scene; shade: RGB bytes a face (f, 3), or None."""
         palette = look.DARK if dark else look.LIGHT
         known = choice.families, choice.parallelograms, dark, shade is None, Q.tobytes()
         new, self._known = known != self._known, known
@@ -79,27 +73,19 @@ class Scene:
         """The camera (for vtk.js) that sees all of V from a direction, as near as it can.
 
         azimuth, elevation: degrees; aspect: width / height of the window.
-
-        Paper: Sec. 3-6 (explorer).
         """
         view._aim(self.plotter.camera, V, *np.radians([azimuth, elevation]), aspect)
         return self.plotter.camera
 
 
 def sight(kind, V):
-    """From where a net is seen by default: azimuth and elevation in degrees.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """From where a net is seen by default: azimuth and elevation in degrees."""
     flat = V is not None and not V[:, 2].any()
     return VIEWS["plane" if flat else kind]
 
 
 def is_lost(V, before):
-    """Whether a net V is far off the place and size of the one that was fitted into the view.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """Whether a net V is far off the place and size of the one that was fitted into the view."""
     (middle, size), (old, reach) = (
         ((W.min(axis=0) + W.max(axis=0)) / 2, np.abs(W - W.mean(axis=0)).max()) for W in (V, before)
     )
@@ -119,16 +105,11 @@ def borrow():
 
     VTK objects that trame has sent to a browser call Python when they are destroyed, and end the
     process where the garbage collector finds them.  So none ever is: the next tab takes it.
-
-    Paper: Sec. 3-6 (explorer).
     """
     return _free.pop() if _free else Scene()
 
 
 def give_back(scene):
-    """Keep a borrowed scene for the next tab.
-
-    Paper: Sec. 3-6 (explorer).
-    """
+    """Keep a borrowed scene for the next tab."""
     scene._known = None
     _free.append(scene)

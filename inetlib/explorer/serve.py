@@ -2,8 +2,6 @@
 
 Only this machine can connect, and only pages from this address: requests that name another
 host, or come from another site, are refused.  Nothing is read but the program's own pages.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
 """
 
 import asyncio
@@ -165,8 +163,6 @@ def serve(surface=None, path=None, port=None, ready=print):
 
     surface, path: `io.Surface` of a file and its name, or None; port: None for the usual one or
     the next that is free, 0 for any.  OSError when the port is taken.
-
-    Paper: Sec. 3-6 (explorer).
     """
 
     async def run():

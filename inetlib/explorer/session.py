@@ -1,7 +1,4 @@
-"""One explorer without a page: a choice, its net, what there is to say and to save.
-
-Paper: Sec. 3-6 (explorer; beyond the paper).
-"""
+"""One explorer without a page: a choice, its net, what there is to say and to save."""
 
 import importlib.util
 import tempfile
@@ -65,10 +62,7 @@ class Session:
     # --- choosing and making --------------------------------------------------------------
 
     def change(self, **values):
-        """Take new values; the sentences on those that are refused.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """Take new values; the sentences on those that are refused."""
         self.choice, problems = choices.changed(self.choice, **values)
         return problems
 
@@ -78,10 +72,7 @@ class Session:
         return self.choice.kind in nets.FOUND and not self.given
 
     def construct(self):
-        """Make the net of the choice, where no optimisation is needed.
-
-        Paper: Sec. 3.3, Sec. 5 (explorer).
-        """
+        """Make the net of the choice, where no optimisation is needed."""
         self.stop()
         self.run = None
         if not self.given:
@@ -94,19 +85,13 @@ class Session:
             self.shown = choice
 
     def begin(self):
-        """The `Run` of a new search, for `search`; an older one is asked to stop.
-
-        Paper: Sec. 6 (explorer).
-        """
+        """The `Run` of a new search, for `search`; an older one is asked to stop."""
         self.stop()
         self.run, self.steps = Run(self.choice), 0
         return self.run
 
     def stop(self):
-        """Ask the search under way to stop; the best net it has is taken.
-
-        Paper: Sec. 6 (explorer).
-        """
+        """Ask the search under way to stop; the best net it has is taken."""
         if self.run is not None:
             self.run.stopped = True
 
@@ -114,8 +99,6 @@ class Session:
         """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and every step.
 
         What a run finds after a newer one has begun is forgotten.
-
-        Paper: Sec. 6 (explorer).
         """
 
         def after(step, V, Q):
@@ -132,10 +115,7 @@ class Session:
             self.run = None
 
     def on_the_way(self, run, V, Q):
-        """Show a net that a run has on its way; False when the run is over.
-
-        Paper: Sec. 6 (explorer).
-        """
+        """Show a net that a run has on its way; False when the run is over."""
         if run is self.run:
             self._settle(run.choice, nets.Made(V, Q, f"step {self.steps}"), "")
         return run is self.run
@@ -143,10 +123,7 @@ class Session:
     # --- saying ---------------------------------------------------------------------------
 
     def numbers(self):
-        """`Numbers` of the net that is shown, None where there is none.
-
-        Paper: Sec. 4.1 (explorer).
-        """
+        """`Numbers` of the net that is shown, None where there is none."""
         if self.V is None:
             return None
         off = self.deviations()
@@ -160,35 +137,23 @@ class Session:
         return Numbers(len(self.Q), float(lam), float(mu), *means, *most, flips, *sizes)
 
     def deviations(self):
-        """theta and theta0 of every face less those asked for, degrees, each (f,).
-
-        Paper: Sec. 4.1 (explorer).
-        """
+        """theta and theta0 of every face less those asked for, degrees, each (f,)."""
         wanted = self.shown.theta, self.shown.theta0
         found = measure.angles(self.V, self.Q)
         return [np.degrees(x) - a for x, a in zip(found, wanted, strict=True)]
 
     def colours(self):
-        """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3).
-
-        Paper: Sec. 4.1 (explorer).
-        """
+        """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
         return look.shades(np.abs(self.deviations()).max(axis=0))
 
     def code(self):
-        """Three lines of Python that make the net of the choice: V, Q.
-
-        Paper: Sec. 3-6 (explorer; beyond the paper).
-        """
+        """Three lines of Python that make the net of the choice: V, Q."""
         if self.given:
             return "# this net came from Python: V, Q"
         return nets.code(self.choice, self.path or "surface.obj")
 
     def link(self):
-        """The choice as URL parameters.
-
-        Paper: Sec. 3-6 (explorer; beyond the paper).
-        """
+        """The choice as URL parameters."""
         return choices.link(self.choice)
 
     # --- saving ---------------------------------------------------------------------------
@@ -198,8 +163,6 @@ class Session:
 
         azimuth, elevation: of the viewer, radians, for pictures.  Nothing stays on the disk.
         ValueError for other suffixes and where there is no net.
-
-        Paper: Sec. 3-6 (explorer; beyond the paper).
         """
         if suffix not in SAVED:
             raise ValueError(f"{suffix}: one of {' '.join(SAVED)} is wanted")
@@ -227,9 +190,6 @@ def _try(make):
 
 
 def missing(suffix):
-    """The package that a file with this suffix needs and that is not installed, or "".
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """The package that a file with this suffix needs and that is not installed, or ""."""
     package = paths.PACKAGES.get(suffix, "")
     return package if package and importlib.util.find_spec(package) is None else ""

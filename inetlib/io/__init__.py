@@ -14,8 +14,6 @@ Coordinates come back bit by bit where the table says float64 (from OBJ and OFF 
 where they are needed), and so does the order of vertices, faces and corners: the labels
 v1 ... v4 are kept.  Errors about a file are ValueErrors of one sentence that starts with its
 name; a missing package is an ImportError that says what to install.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 from contextlib import contextmanager
@@ -24,11 +22,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import files, mesh, repair
-from .binaryfiles import read_ply, read_stl, write_ply
-from .cadfiles import read_vtp, write_3dm, write_dxf, write_vtp
+from .. import files, mesh, repair
+from .binary import read_ply, read_stl, write_ply
+from .exchange import read_vtp, write_3dm, write_dxf, write_vtp
 from .glb import read_glb, write_glb
-from .textfiles import read_obj, read_off, write_obj, write_off
+from .text import read_obj, read_off, write_obj, write_off
 
 READERS = {
     ".obj": read_obj,
@@ -78,8 +76,6 @@ def read(path):
     their points once a triangle: equal ones are returned as one vertex.  ValueError when
     the file is missing, empty, broken, of another kind than its suffix says, has no faces,
     an index out of range or a coordinate that is NaN, infinite or beyond 1e100.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
     reader = _by_suffix(READERS, path, "read")
@@ -102,8 +98,6 @@ def surface(path, merge=True):
     merge=False duplicates stay: a surface that was cut open on purpose stays open.
     ValueError as in `read`, for edges of more than two faces, vertices with two fans,
     one-sided surfaces and triangles without area; vertex numbers count from 0.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
     V, F = read(path)
@@ -120,8 +114,6 @@ def net(path):
     Faces with three, five or more corners go to `polygons`.  ValueError as in `read`, when
     no face is a quad, and when a face uses a vertex twice.  The labels are those of the file:
     see `mesh.is_labelled`, `mesh.label`.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     V, F = read(path)
     if isinstance(F, list):
@@ -195,8 +187,6 @@ def write(path, V, Q, curves=None, polygons=(), force=False):
     existing file without `force`; ValueError for unknown suffixes, directories, a missing
     folder, curves where the format has no place for them, and indices out of range;
     ImportError when the package for the format is missing.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     path = Path(path)
     writer = _by_suffix(WRITERS, path, "write")

@@ -6,8 +6,6 @@ Unknowns, with V vertices and F faces and one column each:
   theta mode    3 V + 2 F + 1: vertices, La, Lb of every face, and c1 = lam^2;
                 4 F equations, 1 more for a given angle
 The shape energies add rows, not equations.
-
-Paper: Sec. 6.1, Sec. 6.3.
 """
 
 from typing import NamedTuple
@@ -15,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, diags_array, vstack
 
-from . import constraints, linear
+from . import residuals as constraints
+from . import sparse
 from .problem import shape
-from .steps import timed
+from .run import timed
 
 EPSILON = 0.001  # of the regularisation
 
@@ -42,14 +41,11 @@ def layout(Q, count, theta_mode):
     start += len(names) * F
     common = ["c1"] if theta_mode else ["lam", "mu"]
     at |= {name: np.full(F, start + k) for k, name in enumerate(common)}
-    return Layout(theta_mode, linear.coordinates(Q), at, start + len(common))
+    return Layout(theta_mode, sparse.coordinates(Q), at, start + len(common))
 
 
 def start(lay, V, Q):
-    """The unknowns at a mesh: auxiliary variables as they are there, common ones their means.
-
-    Paper: Sec. 6.2.
-    """
+    """The unknowns at a mesh: auxiliary variables as they are there, common ones their means."""
     x = np.zeros(lay.columns)
     x[: V.size] = V.ravel()
     P = V[Q]
@@ -68,10 +64,7 @@ def start(lay, V, Q):
 
 
 def logs(lay, x):
-    """(log lam, log mu) of the common unknowns; of their absolute values.
-
-    Paper: Sec. 6.1.
-    """
+    """(log lam, log mu) of the common unknowns; of their absolute values."""
     if lay.theta_mode:
         return np.full(2, np.log(np.abs(x[lay.at["c1"][0]])) / 2)
     return np.log(np.abs(x[[lay.at["lam"][0], lay.at["mu"][0]]]))
@@ -132,15 +125,12 @@ def size(Q, count, goal):
 
 
 def hard(lay, goal, x):
-    """(residual, Jacobian) of all hard constraints at the unknowns x.
-
-    Paper: Sec. 6.1.
-    """
+    """(residual, Jacobian) of all hard constraints at the unknowns x."""
     residuals, blocks = [], []
     for function, index, more in equations(lay, goal):
         residual, jacobian = function(x[index], *more)
         residuals.append(residual.ravel())
-        blocks.append(linear.rows(jacobian, index, lay.columns))
+        blocks.append(sparse.rows(jacobian, index, lay.columns))
     return np.concatenate(residuals), vstack(blocks, format="csr")
 
 
@@ -149,9 +139,7 @@ def step(given, lay, goal, x, diagonal, seconds, with_shape=True, solve=None):
 
     x holds lengths in units of `diagonal`, the bounding box's, as the paper scales its
     meshes; with_shape: with the energies of Sec. 6.3, or without (the last two steps);
-    solve: a function (A, b), `linear.factor` unless given.
-
-    Paper: Sec. 6.3 (guided projection).
+    solve: a function (A, b), `solver.sparse.factor` unless given.
     """
     with timed(seconds, "assemble"):
         residual, H = hard(lay, goal, x)
@@ -167,5 +155,5 @@ def step(given, lay, goal, x, diagonal, seconds, with_shape=True, solve=None):
         moving = diags_array(root)
         A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
     with timed(seconds, "solve"):
-        solve = solve or (lambda A, b: linear.factor(A)(b))
+        solve = solve or (lambda A, b: sparse.factor(A)(b))
         return -root * solve(A.tocsc(), root * g)

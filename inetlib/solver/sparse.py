@@ -1,9 +1,7 @@
-"""Sparse matrices from local Jacobians, and their factorisation.
-
-Paper: Sec. 6.3 (linear systems).
-"""
+"""Sparse matrices from local Jacobians, and their factorisation."""
 
 import numpy as np
+from scipy import fft
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
@@ -19,8 +17,6 @@ def rows(jacobian, index, columns):
     """Local Jacobians (f, q, k) as a sparse matrix (f q, columns).
 
     index: (f, k), the column of each local variable; within a row all different.
-
-    Paper: Sec. 6.3 (linear systems).
     """
     f, q, k = jacobian.shape
     pattern = np.repeat(index, q, axis=0).ravel(), np.arange(0, f * q * k + 1, k)
@@ -28,19 +24,13 @@ def rows(jacobian, index, columns):
 
 
 def coordinates(vertices):
-    """Columns of the coordinates of vertices (f, c): (f, 3 c).
-
-    Paper: Sec. 6.3 (linear systems).
-    """
+    """Columns of the coordinates of vertices (f, c): (f, 3 c)."""
     vertices = np.asarray(vertices)
     return (3 * vertices[..., None] + np.arange(3)).reshape(len(vertices), -1)
 
 
 def scaled(A, columns):
-    """A with its columns multiplied by numbers, (columns,) or one; CSR.
-
-    Paper: Sec. 6.3 (linear systems).
-    """
+    """A with its columns multiplied by numbers, (columns,) or one; CSR."""
     data = A.data * (columns[A.indices] if np.ndim(columns) else columns)
     return csr_array((data, A.indices, A.indptr), shape=A.shape)
 
@@ -52,8 +42,6 @@ def factor(A, order=None):
     `nested_dissection`; without one, a band where A is narrow, else minimum degree on the
     pattern of A + A^T, many times faster here than SuperLU's default ordering.  Pivots are
     on the diagonal.
-
-    Paper: Sec. 6.3 (linear systems).
     """
     if order is None:
         return _banded(A) or _superlu(A.tocsc(), "MMD_AT_PLUS_A").solve
@@ -122,8 +110,6 @@ def nested_dissection(points, A):
     points (k, d): where the unknowns are, A (b k, b k): b in a row at each point.  Of each
     half of the points, those with a neighbour in the other half come last.  Twice as fast
     as minimum degree from some 10 000 points on; it depends on the pattern of A only.
-
-    Paper: Sec. 6.3 (linear systems).
     """
     count = len(points)
     block = A.shape[0] // count
@@ -157,3 +143,129 @@ def _halves(points, part):
     side = np.zeros(len(points), dtype=np.int64)
     side[ranked] = np.arange(len(order)) - np.repeat(start, size) >= np.repeat(size // 2, size)
     return side
+
+
+# --- One smallest step of a large grid, by conjugate gradients and without any matrix. ---
+
+INEXACT = 1e-4  # relative residual of the conjugate gradients
+
+
+def step(A, f):
+    """(d, iterations): the smallest change with J d = f, nearly; d (3, m+1, n+1)."""
+    y, count = solve(A, f)
+    return transposed(A, y), count
+
+
+def equations(P, log_lam, log_mu):
+    """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the Jacobian.
+
+    The same equations as `solver.residuals.log_ratios` for the faces of a grid.
+
+    Paper: Eq. (11), Eq. (12).
+    """
+    d1 = P[:, 1:, :-1] - P[:, :-1, 1:]
+    d2 = P[:, 1:, 1:] - P[:, :-1, :-1]
+    s1, s2, c = ((a * b).sum(axis=0) for a, b in ((d1, d1), (d2, d2), (d1, d2)))
+    p, q = s1 + s2 + 2 * c, s1 + s2 - 2 * c  # (2 m13)^2 and (2 m24)^2
+    f = np.stack([0.5 * np.log(s2 / s1) - log_lam, 0.5 * np.log(p / q) - log_mu])
+    A = np.empty((2, 2, *d1.shape))
+    A[0, 0], A[1, 0] = d1 / s1, d2 / s2
+    plus, minus = 1 / p + 1 / q, 1 / p - 1 / q
+    A[0, 1] = -minus * d1 - plus * d2
+    A[1, 1] = plus * d1 + minus * d2
+    return f, A
+
+
+def times(A, x):
+    """J x, (2, m, n), of vectors x (3, m+1, n+1) at the vertices."""
+    one, two = x[:, :-1, 1:] - x[:, 1:, :-1], x[:, 1:, 1:] - x[:, :-1, :-1]
+    rows = "rkij,kij->rij"
+    return np.einsum(rows, A[0], one) + np.einsum(rows, A[1], two)
+
+
+def transposed(A, y):
+    """J^T y, (3, m+1, n+1), of the face values y (2, m, n)."""
+    x = np.zeros((3, y.shape[1] + 1, y.shape[2] + 1))
+    one, two = (np.einsum("rkij,rij->kij", a, y) for a in A)
+    x[:, :-1, 1:] += one
+    x[:, 1:, :-1] -= one
+    x[:, 1:, 1:] += two
+    x[:, :-1, :-1] -= two
+    return x
+
+
+def solve(A, f, tolerance=INEXACT, most=300):
+    """(y, iterations) with J J^T y = f up to the relative residual: conjugate gradients."""
+    precondition = preconditioner(A)
+    y, r = np.zeros_like(f), f.copy()
+    z = precondition(r)
+    p, rz = z.copy(), _dot(r, z)
+    enough = tolerance**2 * _dot(f, f)
+    for k in range(most):
+        if _dot(r, r) <= enough:
+            return y, k
+        q = times(A, transposed(A, p))
+        step = rz / _dot(p, q)
+        y += step * p
+        r -= step * q
+        z = precondition(r)
+        before, rz = rz, _dot(r, z)
+        p = z + (rz / before) * p
+    return y, most
+
+
+def _dot(a, b):
+    return np.einsum("rij,rij->", a, b)  # np.vdot would start threads that only wait here
+
+
+def preconditioner(A):
+    """A function z(r), symmetric positive definite, nearly the inverse of J J^T.
+
+    Each face is scaled by the Cholesky factor of its 2 x 2 block; what remains is nearly the
+    same at every face and is inverted by fast sine transforms: in a wave with the cosines a
+    and b along the two directions it is 1 - a b + 2 K (b - a), K the mean coupling of
+    neighbours across u-edges minus that across v-edges.  In single precision.
+    """
+    scale = _scale(A)
+    K = _coupling(A, scale)
+    a, b = (np.cos(np.pi * np.arange(1, k + 1) / (k + 1)) for k in A.shape[3:])
+    rest, across = 1 - a[:, None] * b, 2 * (b - a[:, None])
+    t00, t01, t11 = rest + K[0, 0] * across, K[0, 1] * across, rest + K[1, 1] * across
+    inverse = np.stack([t11, -t01, t00]) / (t00 * t11 - t01**2)
+    i00, i10, i11, w00, w01, w11 = np.concatenate([scale, inverse]).astype(np.float32)
+
+    def waves(z):
+        return fft.dstn(z, type=1, norm="ortho", axes=(1, 2), overwrite_x=True)
+
+    def apply(r):
+        r = r.astype(np.float32)
+        z = waves(np.stack([i00 * r[0], i10 * r[0] + i11 * r[1]]))
+        z = waves(np.stack([w00 * z[0] + w01 * z[1], w01 * z[0] + w11 * z[1]]))
+        return np.stack([i00 * z[0] + i10 * z[1], i11 * z[1]]).astype(np.float64)
+
+    return apply
+
+
+def _scale(A):
+    """Entries 00, 10, 11 of the inverse Cholesky factors of the blocks of J J^T, (3, m, n)."""
+    d00, d01, d11 = (
+        2 * sum(np.einsum("kij,kij->ij", a[r], a[s]) for a in A)
+        for r, s in ((0, 0), (0, 1), (1, 1))
+    )
+    i00, i11 = 1 / np.sqrt(d00), 1 / np.sqrt(d11 - d01**2 / d00)
+    return np.stack([i00, -i11 * d01 / d00, i11])
+
+
+def _coupling(A, scale):
+    """K of `preconditioner`, (2, 2), symmetric, with eigenvalues below 0.475."""
+    i00, i10, i11 = scale
+    A1, A2 = (np.stack([i00 * a[0], i10 * a[0] + i11 * a[1]]) for a in A)  # scaled rows
+
+    def mean(one, two):
+        return np.einsum("rkij,skij->rs", one, two) / one[0, 0].size
+
+    v = mean(A1[..., :-1], A2[..., 1:]) + mean(A2[..., :-1], A1[..., 1:])
+    u = mean(A1[..., :-1, :], A2[..., 1:, :]) + mean(A2[..., :-1, :], A1[..., 1:, :])
+    K = -(u + v + (u + v).T) / 4
+    size = np.abs(np.linalg.eigvalsh(K)).max()
+    return K * min(1, 0.475 / size) if size else K

@@ -1,8 +1,6 @@
 """GLB (binary glTF 2.0): scenes for the web, for phones and for slides; float32 by the format.
 
 Read here and not by VTK, whose reader ends the process on some broken files.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 import json
@@ -11,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .repair import triangulate, weld
+from ..repair import triangulate, weld
 
 TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
@@ -21,8 +19,6 @@ def read_glb(path):
     """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene; equal points become one.
 
     glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     data = Path(path).read_bytes()
     if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
@@ -89,10 +85,8 @@ def write_glb(path, V, Q, polygons, curves):
     """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
 
     Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
-    from .plot import COLOURS, PALE  # matplotlib is slow to import
+    from ..plot import COLOURS, PALE
 
     triangles = triangulate(V, [*Q, *polygons])
     ends = {k: np.concatenate([np.stack([c[:-1], c[1:]], 1) for c in f]) for k, f in curves.items()}

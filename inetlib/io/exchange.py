@@ -2,8 +2,6 @@
 
 They are imported when a file asks for them; a missing one is an ImportError of one sentence.
 Each writer keeps float64 coordinates and quads.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 import importlib
@@ -34,10 +32,7 @@ def _need(name):
 
 
 def read_vtp(path):
-    """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over."""
     xml, arrays = _need("vtkmodules.vtkIOXML"), _need("vtkmodules.util.numpy_support")
     start = Path(path).read_bytes()[:2000]
     if b"<VTKFile" not in start or b"PolyData" not in start:
@@ -66,10 +61,7 @@ def read_vtp(path):
 
 
 def write_vtp(path, V, Q, polygons, curves):
-    """Write a VTP file.  Cell data `family`: 0 u, 1 v, 2 d1, 3 d2 for curves, -1 for panels.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Write a VTP file.  Cell data `family`: 0 u, 1 v, 2 d1, 3 d2 for curves, -1 for panels."""
     xml, arrays = _need("vtkmodules.vtkIOXML"), _need("vtkmodules.util.numpy_support")
     core, model = _need("vtkmodules.vtkCommonCore"), _need("vtkmodules.vtkCommonDataModel")
 
@@ -118,7 +110,7 @@ def _vtk_messages():
 
 def _colours(curves):
     """{layer: (red, green, blue)} of the panels and of the families that are there."""
-    from .plot import COLOURS, GREY  # matplotlib is slow to import
+    from ..plot import COLOURS, GREY
 
     text = {"panels": GREY} | {name: COLOURS[name] for name in curves}
     return {k: tuple(int(c[i : i + 2], 16) for i in (1, 3, 5)) for k, c in text.items()}
@@ -127,8 +119,6 @@ def _colours(curves):
 def write_dxf(path, V, Q, polygons, curves):
     """Write a DXF file (R2010, no unit): layer `panels` with one MESH, and 3D polylines in
     the layers `u`, `v`, `d1`, `d2`.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     ezdxf = _need("ezdxf")
     drawing = ezdxf.new("R2010", units=0)
@@ -152,10 +142,8 @@ def write_3dm(path, V, Q, polygons, curves):
 
     Rhino's meshes have triangles and quads only: a polygon becomes a mesh of its own, cut
     into triangles.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
-    from .repair import triangulate
+    from ..repair import triangulate
 
     rhino = _need("rhino3dm")
     model = rhino.File3dm()

@@ -10,7 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import constraints, linear, mesh
+from .. import mesh
+from . import residuals as constraints
+from . import sparse
 
 LARGEST = 1200  # faces, of a dense singular value decomposition
 
@@ -38,7 +40,7 @@ def jacobian(V, Q):
     """
     V, Q = mesh.check_arrays(V, Q)
     _, blocks = constraints.log_ratios(V[Q].reshape(-1, 12))
-    return linear.rows(blocks, linear.coordinates(Q), V.size)
+    return sparse.rows(blocks, sparse.coordinates(Q), V.size)
 
 
 def count(V, Q, fixed=(), tolerance=1e-9):

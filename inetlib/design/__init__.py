@@ -2,20 +2,19 @@
 
 Every conformal map of a sheared grid is nearly an isogonal net for every pair of angles, so
 the optimisation that follows moves the vertices only a little along the surface.
-
-Paper: Sec. 6.2 (beyond the paper).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from . import clean as cleaning
-from . import flatten, overlay, parallelogram, reference, solver
-from .problem import Weights
-from .steps import timed
-from .survey import Report, area_of, survey
-from .survey import describe as describe  # public here too
+from .. import clean as cleaning
+from .. import parallelogram, reference, solver
+from ..solver.problem import Weights
+from ..solver.run import timed
+from . import flatten, overlay
+from .report import Report, area_of, survey
+from .report import describe as describe
 
 NEAR = Weights(fairness=0.02, closeness=0.001, approximation=10.0, boundary=0.0)
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
@@ -64,15 +63,13 @@ def cover(
     optimise       move the vertices until the angles are exact (else: nearly)
     tolerance      of the angles, radians; progress: show a bar
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
-                   after every one (`runs.Step`); it may return False to stop
+                   after every one (`solver.run.Step`); it may return False to stop
 
     The surface is a disk (one boundary loop) or a ring (two), in one piece; the net has whole
     quads only, so that the surface shows at the boundary for less than a quad's width.  Over
     a ring the net closes, with the nearest size and direction for which it can.  ValueError,
     one sentence, for input that cannot be covered; safe repairs are named in the report.
-    Look at `report.converged`: a net that is off is returned, not raised.
-
-    Paper: Sec. 6.2 (beyond the paper).
+    Look at `design.report.converged`: a net that is off is returned, not raised.
     """
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range

@@ -1,16 +1,16 @@
 """Large grids: solved coarse, refined by splines, and set right by a few smallest steps.
 
 A net of m x n quads is an array P (3, m+1, n+1) inside here, coordinates first.
-
-Paper: Sec. 6.3 (beyond the paper).
 """
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 from tqdm import tqdm
 
-from . import adjacency, goals, matrixfree, measure, mesh, parallelogram, runs, solver
-from .steps import timed
+from .. import measure, mesh, parallelogram, solver
+from . import goal as goals
+from . import run, sparse
+from .run import timed
 
 TOLERANCE = np.radians(1e-6)
 SPARE = 100  # the finest level aims at the tolerance divided by this
@@ -40,8 +40,6 @@ def optimize(
     again; details of X smaller than coarse quads are lost.  Where that fails it is tried
     once more from a finer coarse grid.  `history` has the steps of all levels in turn, and
     `message` says how many of them belong to which level.
-
-    Paper: Sec. 6.3 (beyond the paper).
     """
     wanted = goals.goal(theta, theta0, lam, mu)
     if wanted.kind != "angles":
@@ -73,10 +71,7 @@ def _checked(X):
 
 
 def levels(m, n, coarse=20):
-    """The sizes [(m0, n0), ..., (m, n)] of the grids from coarse to fine, each about doubled.
-
-    Paper: Sec. 6.3 (beyond the paper).
-    """
+    """The sizes [(m0, n0), ..., (m, n)] of the grids from coarse to fine, each about doubled."""
     if not coarse >= 4:
         raise ValueError(f"coarse = {coarse}: at least 4 quads are wanted")
     sizes = [(m, n)]
@@ -124,9 +119,9 @@ def _level(P, goal, most, aim, enough, seconds, bar):
     step, history = judge(P), []
     while step and step.deviation > aim and len(history) < most:
         with timed(seconds, "assemble"):
-            f, A = matrixfree.equations(P, *judge.logs[:, 0])
+            f, A = sparse.equations(P, *judge.logs[:, 0])
         with timed(seconds, "solve"):
-            d, _ = matrixfree.step(A, f)
+            d, _ = sparse.step(A, f)
         after = judge(P - d, np.sqrt((d * d).sum(axis=0).max()))
         if after is None or after.deviation >= step.deviation:
             break
@@ -138,7 +133,7 @@ def _level(P, goal, most, aim, enough, seconds, bar):
 
 
 class _Judge:
-    """Measures nets of one size; the `runs.Step`, or None where the array is no net."""
+    """Measures nets of one size; the `solver.run.Step`, or None where the array is no net."""
 
     def __init__(self, P, goal, seconds):
         size = P.shape[1] - 1, P.shape[2] - 1
@@ -147,7 +142,7 @@ class _Judge:
         self.logs = goals.logs(goal, [])[0][:, None]
         with timed(seconds, "check"):
             self.Q = mesh.grid_quads(*size)
-            self.neighbours = adjacency.face_neighbours(self.Q)
+            self.neighbours = mesh.face_neighbours(self.Q)
 
     def __call__(self, P, size=0.0):
         with timed(self.seconds, "check"):
@@ -160,7 +155,7 @@ class _Judge:
                 return None
             off = [np.abs(a - b) for a, b in zip(angles, self.goal.values, strict=True)]
             spread = [float(f(x)) for x in off for f in (np.max, np.mean)]
-            return runs.Step("angle", self.goal, float(residual), *spread, float(size), flips)
+            return run.Step("angle", self.goal, float(residual), *spread, float(size), flips)
 
 
 def _finished(nets, shape, goal):
@@ -191,10 +186,7 @@ def _vertices(P):
 
 
 def refine(P, m, n):
-    """The grid P (3, ., .) at m x n quads, by cubic splines through its points.
-
-    Paper: Sec. 6.3 (beyond the paper).
-    """
+    """The grid P (3, ., .) at m x n quads, by cubic splines through its points."""
     if P.shape[1:] == (m + 1, n + 1):
         return P
     here = [np.linspace(0, 1, k) for k in P.shape[1:]]

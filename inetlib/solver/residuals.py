@@ -5,8 +5,6 @@ each place, and returns (residual (f, q), jacobian (f, q, k)).  The corners of a
 first 12 entries of its row, (x, y, z) of v1, v2, v3, v4; of a polyline's three neighbouring
 vertices 9, of a single vertex 3.  Auxiliary variables follow in the order that is stated.
 Where these rows sit in the unknowns, how they are weighted and solved, is not known here.
-
-Paper: Sec. 6.1, Sec. 6.3.
 """
 
 import numpy as np
@@ -179,34 +177,22 @@ def theta_ratio(theta):
 
 
 def fairness(x):
-    """2 v - left - right of three neighbours (left, v, right) of a polyline; x: (k, 9).
-
-    Paper: Sec. 6.3 (fairness).
-    """
+    """2 v - left - right of three neighbours (left, v, right) of a polyline; x: (k, 9)."""
     jacobian = np.kron(np.array([-1.0, 2.0, -1.0]), np.eye(3))
     return x @ jacobian.T, np.broadcast_to(jacobian, (len(x), 3, 9))
 
 
 def closeness(x, before):
-    """v - its position one iteration before; x, before: (k, 3).
-
-    Paper: Sec. 6.3 (self-closeness).
-    """
+    """v - its position one iteration before; x, before: (k, 3)."""
     return x - before, np.broadcast_to(np.eye(3), (len(x), 3, 3))
 
 
 def approximation(x, feet, normals):
-    """(v - p) . n, the distance from the tangent plane at the closest point; all (k, 3).
-
-    Paper: Sec. 6.3 (approximation).
-    """
+    """(v - p) . n, the distance from the tangent plane at the closest point; all (k, 3)."""
     return _dot(x - feet, normals)[:, None], normals[:, None]
 
 
 def gliding(x, feet, e2, e3):
-    """((v - p) . e2, (v - p) . e3): the distance from the tangent of the boundary; all (k, 3).
-
-    Paper: Sec. 6.3 (boundary gliding).
-    """
+    """((v - p) . e2, (v - p) . e3): the distance from the tangent of the boundary; all (k, 3)."""
     frame = np.stack([e2, e3], axis=1)
     return np.einsum("kqx,kx->kq", frame, x - feet), frame

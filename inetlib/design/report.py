@@ -1,14 +1,103 @@
-"""How good a cover of a surface is: angles, distances both ways, sizes, the map it came from.
-
-Paper: Sec. 6.2 (beyond the paper).
-"""
+"""What there is to say about a net: numbers in degrees, for a table or for JSON."""
 
 from typing import NamedTuple
 
 import igl
 import numpy as np
 
-from . import measure, mesh, reference
+from .. import measure, mesh, reference
+
+
+def net(V, Q, polygons=(), wanted=None):
+    """The numbers of a labelled net as a dict of plain numbers, angles in degrees.
+
+    wanted: what was asked for, {"theta": 60, "theta0": None, "lam": 1.2, ...}, angles in
+    degrees; deviations are from it, or from the mean of the net where it is None or missing.
+    "ratios" and "angles" hold `measure.Spread` as dicts; "deviation" is the largest one of
+    the two angles, and polygons become their numbers of corners.
+    """
+    quality = measure.quality(V, Q)
+    names = ("lam", "mu"), ("theta", "theta0")
+    columns = [measure.ratios(V, Q), np.degrees(measure.angles(V, Q))]
+    wanted = {name: (wanted or {}).get(name) for pair in names for name in pair}
+    spreads = [
+        {
+            name: measure.spread(x, wanted.get(name))._asdict()
+            for name, x in zip(pair, values, strict=True)
+        }
+        for pair, values in zip(names, columns, strict=True)
+    ]
+    return plain(
+        {
+            "vertices": len(np.unique(Q)),
+            "quads": len(Q),
+            "polygons": sorted(len(polygon) for polygon in polygons),
+            "wanted": wanted,
+            "ratios": spreads[0],
+            "angles": spreads[1],
+            "deviation": max(s["max_deviation"] for s in spreads[1].values()),
+            "flips": quality.flips,
+            "area_ratio": quality.area_ratio,
+            "aspect": quality.aspect,
+            "planarity": quality.planarity,
+        }
+    )
+
+
+def table(numbers):
+    """The numbers of `net` as lines of text."""
+    count = f"{numbers['vertices']} vertices, {numbers['quads']} quads"
+    if numbers["polygons"]:
+        corners = ", ".join(str(n) for n in numbers["polygons"][:8])
+        more = ", ..." if len(numbers["polygons"]) > 8 else ""
+        count += f"; {len(numbers['polygons'])} other faces, with {corners}{more} corners"
+    lines = [count, f"{'':12}{'mean':>15}{'lowest':>15}{'highest':>15}   largest deviation"]
+    for name, s in (numbers["ratios"] | numbers["angles"]).items():
+        wanted = numbers["wanted"].get(name)
+        source = "the mean" if wanted is None else f"{wanted:g}"
+        label = f"{name} deg" if name in numbers["angles"] else name
+        values = "".join(f"{s[key]:15.9f}" for key in ("mean", "low", "high"))
+        lines.append(f"{label:12}{values}   {s['max_deviation']:.3g} from {source}")
+    lines.append(
+        f"{numbers['flips']} flipped faces, smallest area {numbers['area_ratio']:.3g} of the "
+        f"largest, aspect {numbers['aspect']:.3g} at most, planarity {numbers['planarity']:.3g}"
+    )
+    return "\n".join(lines)
+
+
+def cover(numbers):
+    """What `design.Report` says more than `net`, as lines of text."""
+    mean, most = (100 * numbers[f"distance_{name}"] for name in ("mean", "max"))
+    low, middle, high = (numbers[f"edge_{name}"] for name in ("low", "mean", "high"))
+    return (
+        f"distance to the surface {mean:.2g} % of its diagonal on average, {most:.2g} % at most\n"
+        f"{100 * numbers['covered']:.0f} % of the surface is covered; edges {low:.3g} to "
+        f"{high:.3g}, mean {middle:.3g}\n"
+        f"largest quad / smallest {numbers['size_ratio']:.3g}; conformal map: distortion "
+        f"{numbers['distortion_mean']:.3f} on average, {numbers['distortion_max']:.3f} at most\n"
+        f"{sum(numbers['seconds'].values()):.2f} seconds"
+    )
+
+
+def plain(value):
+    """Dicts, lists and Python numbers in place of arrays, tuples and numpy's numbers.
+
+    Numbers that are not finite become None, for JSON.
+    """
+    if hasattr(value, "_asdict"):
+        value = value._asdict()
+    if isinstance(value, dict):
+        return {str(key): plain(x) for key, x in value.items()}
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [plain(x) for x in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
+
+
+# --- how good a cover of a surface is ---
 
 
 class Report(NamedTuple):
@@ -63,9 +152,7 @@ class Report(NamedTuple):
 def survey(V, Q, theta, theta0, goal, flat):
     """The measured part of a `Report`, as a dict, of the net V, Q over the reference `goal`.
 
-    theta, theta0: wanted, radians; goal: from `reference.mesh`; flat: from `flatten.flatten`.
-
-    Paper: Sec. 6.2 (beyond the paper).
+    theta, theta0: wanted, radians; goal: from `reference.mesh`; flat: from `flatten`.
     """
     found = {"theta": theta, "theta0": theta0} | _angles(V, Q, theta, theta0)
     return found | _distances(V, Q, goal) | _sizes(V, Q, goal) | _map(flat)
@@ -112,10 +199,7 @@ def _sizes(V, Q, goal):
 
 
 def area_of(V, F):
-    """The area of triangles (f, 3) or quads (f, 4), cut along their shorter diagonals.
-
-    Paper: Sec. 6.2 (beyond the paper).
-    """
+    """The area of triangles (f, 3) or quads (f, 4), cut along their shorter diagonals."""
     return float(igl.doublearea(*mesh.triangles(V, F)).sum() / 2)
 
 
@@ -129,10 +213,7 @@ def _map(flat):
 
 
 def describe(report):
-    """The `Report` in lines of text, angles in degrees, distances in % of the diagonal.
-
-    Paper: Sec. 6.2 (beyond the paper).
-    """
+    """The `Report` in lines of text, angles in degrees, distances in % of the diagonal."""
     r, degrees = report, np.degrees
     lines = [
         *(f"input: {words}" for words in r.repairs),

@@ -2,8 +2,6 @@
 
 A grid point is z = i u + j v with integers i, j.  Over a ring two points are the same when
 they differ by a multiple of the period, and the period must be a grid vector k u + l v.
-
-Paper: Sec. 6.2 (beyond the paper).
 """
 
 from typing import NamedTuple
@@ -13,7 +11,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from . import adjacency, parallelogram, ties
+from .. import mesh, parallelogram, ties
 
 INSIDE = 1e-7  # of the size of the domain: points this close to it are inside, far above rounding
 TRIES = 30  # sizes that are tried for a wanted number of quads
@@ -64,8 +62,6 @@ def cover(domain, theta, theta0, count=None, size=None, direction=0.0):
     direction: angle of the u-lines against the real axis of the flat surface, radians.  Over
     a ring edge and direction are those nearest to the wanted ones that close up around it.
     ValueError if not one whole quad fits inside.
-
-    Paper: Sec. 6.2 (beyond the paper).
     """
     lam, mu = parallelogram.ratios(theta, theta0)
     rho = parallelogram.rho(lam, mu)
@@ -169,11 +165,11 @@ def _reaches(domain, z):
 def _largest_piece(Q):
     """The quads connected by edges to the most others, no two of them touching at a vertex only."""
     while len(Q):
-        one, two = adjacency.pairs(Q).T // 4
+        one, two = mesh.pairs(Q).T // 4
         graph = coo_array((np.ones(len(one)), (one, two)), shape=(len(Q), len(Q)))
         label = connected_components(graph, directed=False)[1]
         Q = Q[label == np.argmax(np.bincount(label))]
-        ends = Q.ravel()[adjacency.twins(Q) < 0]  # a vertex twice on the boundary is pinched
+        ends = Q.ravel()[mesh.twins(Q) < 0]  # a vertex twice on the boundary is pinched
         number, count = np.unique(ends, return_counts=True)
         pinched = np.isin(Q, number[count > 1]).any(axis=1)
         if not pinched.any():

@@ -3,8 +3,6 @@
 The work is shared: `goals` knows what is wanted, `problem` checks the input and holds the
 shape energies, `steps` and `guided` make one step of either formulation, `runs` decides
 which step comes next and judges its net by `measure`.
-
-Paper: Sec. 6.
 """
 
 from typing import NamedTuple
@@ -12,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from . import goals, guided, runs
-from .parallelogram import angles as exact_angles
-from .problem import PAPER, Weights, problem
+from ..parallelogram import angles as exact_angles
+from . import goal as goals
+from . import guided, run
+from .problem import PAPER, Weights, prepare
 
 STRIDE = np.radians(15)
 
@@ -30,7 +29,7 @@ class NotConverged(RuntimeError):
 class Result(NamedTuple):
     """The optimised net: V (n, 3), its ratios and angles (radians), and how it was found.
 
-    history: list of `runs.Step`, the first is the start; seconds: {stage: seconds}; sizes:
+    history: list of `solver.run.Step`, the first is the start; seconds: {stage: seconds}; sizes:
     (#var, #cons) of the formulation; message: why it converged or did not.
     """
 
@@ -79,7 +78,7 @@ def optimize(
     formulation  "ratio": two logarithms a face (residual="quadratic": scaled squares), shape
                  steps, then smallest steps to the angles; "paper": guided projection by
                  SciPy's spsolve; "paper, splu": the same, ordered better and so faster
-    weights      `Weights` of the shape energies; `problem.PAPER` unless given for "paper"
+    weights      `Weights` of the shape energies; `solver.problem.PAPER` unless given for "paper"
     fixed        vertices that stay: numbers, mask or "boundary"; mobility: see `problem`
     polygons     corners of faces that are no quads, one sequence each
     via          "mean": by goals at most `stride` apart from the mean angles of the mesh;
@@ -100,7 +99,7 @@ def optimize(
     wanted = goals.goal(theta, theta0, lam, mu, equal)
     _check_options(*options, on_surface)
     weights = weights or (Weights() if formulation == "ratio" else PAPER)
-    given = problem(V, Q, wanted, weights, reference, on_surface, fixed, mobility, polygons)
+    given = prepare(V, Q, wanted, weights, reference, on_surface, fixed, mobility, polygons)
     result = _solve(given, *options, progress, callback)
     if strict and not result.converged:
         raise NotConverged(result)
@@ -112,7 +111,7 @@ def _check_options(*options):
     choices = {
         "formulation": (formulation, ("ratio", "paper", "paper, splu")),
         "residual": (residual, ("log", "quadratic")),
-        "via": (via, ("mean", "jump", *runs.STARTS)),
+        "via": (via, ("mean", "jump", *run.STARTS)),
     }
     for name, (value, allowed) in choices.items():
         if value not in allowed:
@@ -128,14 +127,14 @@ def _check_options(*options):
 
 def _solve(given, *options):
     formulation, residual, via, stride, shape_steps, tolerance, iterations = options[:7]
-    log = runs.Log(given, tolerance, *options[7:])
+    log = run.Log(given, tolerance, *options[7:])
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         if formulation != "ratio":
             solve = spsolve if formulation == "paper" else None
-            runs.paper(log, via, stride, 17 if iterations is None else iterations, solve)
+            run.paper(log, via, stride, 17 if iterations is None else iterations, solve)
         else:
             limit = np.inf if iterations is None else iterations
-            runs.ratio(log, via, stride, shape_steps, residual == "quadratic", limit)
+            run.ratio(log, via, stride, shape_steps, residual == "quadratic", limit)
     (flips, deviation), V, s = log.best
     good = deviation <= log.tolerance and flips == 0
     lam, mu = (float(x) for x in np.exp(goals.logs(given.goal, s)[0]))

@@ -1,8 +1,6 @@
 """OBJ and OFF: meshes as lines of text, read strictly and written with every digit.
 
 Readers return points and faces (lists, counted from 0); their ValueErrors name the line.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 from pathlib import Path
@@ -15,8 +13,6 @@ def read_obj(path):
 
     Understands v/vt/vn corners, indices from the end (negative) and continued lines; colours
     behind the coordinates, textures, normals, lines and groups are passed over.
-
-    Paper: Sec. 6 (files; beyond the paper).
     """
     points, faces, lines = [], [], []
     for number, words in _rows(path):
@@ -47,10 +43,7 @@ def _obj_face(words, count, number):
 
 
 def write_obj(path, V, Q, polygons, curves):
-    """Write an OBJ file: the group `panels`, and each family of curves as a group of `l` lines.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Write an OBJ file: the group `panels`, and each family of curves as a group of `l` lines."""
     with open(path, "w", encoding="utf-8", newline="\n") as out:
         out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in V.tolist())
         out.write("g panels\n")
@@ -68,10 +61,7 @@ def _obj_line(key, indices):
 
 
 def read_off(path):
-    """Points (n lists of 3) and faces (lists of indices) of an OFF file; colours are passed over.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Points (n lists of 3) and faces of an OFF file; colours are passed over."""
     rows = list(_rows(path))
     number, first = rows[0] if rows else (1, [""])
     kind = first[0].upper()
@@ -108,10 +98,7 @@ def _off_face(words, count, number):
 
 
 def write_off(path, V, Q, polygons, curves):
-    """Write an OFF file; it has no place for curves.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Write an OFF file; it has no place for curves."""
     faces = [*Q.tolist(), *(polygon.tolist() for polygon in polygons)]
     with open(path, "w", encoding="utf-8", newline="\n") as out:
         out.write(f"OFF\n{len(V)} {len(faces)} 0\n")
@@ -123,10 +110,7 @@ def write_off(path, V, Q, polygons, curves):
 
 
 def text(data):
-    """The bytes of a text file as a string; ValueError when they are something else.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """The bytes of a text file as a string; ValueError when they are something else."""
     if b"\0" in data:
         raise ValueError("the file is binary, not text: does its suffix fit?")
     return data.decode("utf-8-sig", errors="replace")  # names and comments may be anything

@@ -1,16 +1,14 @@
 """PLY and STL: meshes as bytes (or as text; both formats come in two kinds).
 
 Readers return points and faces as arrays, or faces as lists where their sizes differ.
-
-Paper: Sec. 6 (files; beyond the paper).
 """
 
 from pathlib import Path
 
 import numpy as np
 
-from .repair import weld
-from .textfiles import text
+from ..repair import weld
+from .text import text
 
 PLY_TYPES = {
     "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
@@ -23,10 +21,7 @@ PLY_ORDERS = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": "
 
 
 def read_ply(path):
-    """Points (n, 3) and faces of a PLY file, text or binary of either byte order.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Points (n, 3) and faces of a PLY file, text or binary of either byte order."""
     data = Path(path).read_bytes()
     head, mark, body = data.partition(b"end_header")
     if not data.startswith(b"ply") or not mark:
@@ -138,10 +133,7 @@ def _ply_text(words, name, count, properties):
 
 
 def write_ply(path, V, Q, polygons, curves):
-    """Write a binary PLY file, coordinates as `double`; it has no place for curves here.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Write a binary PLY file, coordinates as `double`; it has no place for curves here."""
     size = "uchar" if all(len(polygon) < 256 for polygon in polygons) else "int"
     head = (
         f"ply\nformat binary_little_endian 1.0\nelement vertex {len(V)}\n"
@@ -161,10 +153,7 @@ def write_ply(path, V, Q, polygons, curves):
 
 
 def read_stl(path):
-    """Points (n, 3) and triangles (f, 3) of an STL file; equal corners become one vertex.
-
-    Paper: Sec. 6 (files; beyond the paper).
-    """
+    """Points (n, 3) and triangles (f, 3) of an STL file; equal corners become one vertex."""
     data = Path(path).read_bytes()
     count = int.from_bytes(data[80:84], "little")
     if len(data) == 84 + 50 * count:

@@ -2,8 +2,6 @@
 
 A `Goal` is a curve, a surface or a point in the plane of (log lam, log mu): what is given
 fixes part of it, and `free` numbers of freedom s remain.
-
-Paper: Sec. 6.1, Sec. 6.2.
 """
 
 from typing import NamedTuple
@@ -11,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq
 
-from . import parallelogram
+from .. import parallelogram
 
 INSIDE = 0.99  # of the range of Eq. (4), for a start
 ALIKE = 1e-9  # radians: two given angles as close as this are meant to be the same
@@ -121,10 +119,7 @@ def logs(goal, s):
 
 
 def freedom(goal, near):
-    """The freedom s of a goal whose (log lam, log mu) comes near the given pair.
-
-    Paper: Sec. 6.1.
-    """
+    """The freedom s of a goal whose (log lam, log mu) comes near the given pair."""
     log_lam, log_mu = _possible(goal, *near)
     values = {"angles": [], "free": [log_lam, log_mu], "equal": [(log_lam + log_mu) / 2]}
     one = log_lam if goal.kind in ("theta", "mu") else log_mu
@@ -161,10 +156,7 @@ def _possible(goal, log_lam, log_mu):
 
 
 def values_at(goal, theta, theta0, log_lam, log_mu):
-    """What a net has in place of the goal's values; the four numbers are its means.
-
-    Paper: Sec. 6.2.
-    """
+    """What a net has in place of the goal's values; the four numbers are its means."""
     here = {"theta": theta, "theta0": theta0, "lam": log_lam, "mu": log_mu}
     names = ("theta", "theta0") if goal.kind == "angles" else (goal.kind,) * len(goal.values)
     return tuple(float(here[name]) for name in names)
@@ -175,8 +167,6 @@ def towards(goal, start, step):
 
     step: the largest change of an angle from one to the next, radians (for a logarithm of
     a ratio the same number).  With step = inf only the goal itself.
-
-    Paper: Sec. 6.2 (gradually).
     """
     start, end = np.array(start), np.array(goal.values)
     far = np.abs(end - start).max(initial=0.0)

@@ -1,15 +1,14 @@
-"""An optimisation problem: the checked input, and all that stays the same from step to step.
-
-Paper: Sec. 6.3.
-"""
+"""An optimisation problem: the checked input, and all that stays the same from step to step."""
 
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, kron
 
-from . import adjacency, constraints, linear, measure, mesh
-from .goals import Goal
+from .. import measure, mesh
+from . import residuals as constraints
+from . import sparse
+from .goal import Goal
 
 FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
 
@@ -20,8 +19,6 @@ class Weights(NamedTuple):
     fairness (omega_2), closeness (omega_3), approximation (omega_4), boundary (omega_5).
     The formulation "ratio" compares them with logarithms of ratios, lengths in mean edges;
     "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`.
-
-    Paper: Sec. 6.3 (weights).
     """
 
     fairness: float | np.ndarray = 0.02
@@ -50,11 +47,11 @@ class Problem(NamedTuple):
     fair: csr_array
     neighbours: np.ndarray
     edge: float
-    shape_factor: linear.Factor
-    angle_factor: linear.Factor
+    shape_factor: sparse.Factor
+    angle_factor: sparse.Factor
 
 
-def problem(
+def prepare(
     V,
     Q,
     goal,
@@ -70,8 +67,6 @@ def problem(
     V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
     fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
     moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net.
-
-    Paper: Sec. 6.3.
     """
     V, Q = _checked_mesh(V, Q)
     count = len(V)
@@ -85,10 +80,10 @@ def problem(
             raise ValueError("on_surface=True needs a reference surface")
     else:
         _check_distance(V, reference)
-    triples = adjacency.triples(Q)
+    triples = mesh.triples(Q)
     edge = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean()
     fair = _fairness(triples, weights.fairness, count)
-    neighbours = adjacency.face_neighbours(Q)
+    neighbours = mesh.face_neighbours(Q)
     return Problem(
         V,
         Q,
@@ -101,16 +96,14 @@ def problem(
         fair,
         neighbours,
         float(edge),
-        linear.Factor(V),
-        linear.Factor(V[Q].mean(axis=1)),
+        sparse.Factor(V),
+        sparse.Factor(V[Q].mean(axis=1)),
     )
 
 
 def shape(problem, V):
     """Matrix (3 n, 3 n) and half gradient (3 n,) of the energies of fairness, approximation
     and boundary gliding at the net V; the last two only with a reference.
-
-    Paper: Sec. 6.3 (target function).
     """
     A, g = problem.fair, problem.fair @ V.ravel()
     if problem.reference is None:
@@ -126,7 +119,7 @@ def shape(problem, V):
         feet, _, e2, e3 = problem.reference.boundary(V[at])
         terms.append((at, weights.boundary[at], constraints.gliding(V[at], feet, e2, e3)))
     for at, weight, (residual, jacobian) in terms:
-        J = linear.rows(jacobian, linear.coordinates(at[:, None]), V.size)
+        J = sparse.rows(jacobian, sparse.coordinates(at[:, None]), V.size)
         W = diags_array(np.repeat(weight, residual.shape[1]))
         A = A + J.T @ W @ J
         g = g + J.T @ (W @ residual.ravel())
@@ -191,7 +184,7 @@ def _mask(fixed, boundary, count):
 
 def _boundary(Q, polygons):
     """The vertices on the boundary, without the rims of the given polygons."""
-    loops = adjacency.boundary_loops(Q)
+    loops = mesh.boundary_loops(Q)
     sets = [frozenset(loop.tolist()) for loop in loops]
     for polygon in polygons:
         rim = frozenset(np.asarray(polygon).ravel().tolist())
@@ -218,6 +211,6 @@ def _check_distance(V, reference):
 def _fairness(triples, weights, count):
     """The matrix of sum w |2 v - left - right|^2, (3 n, 3 n)."""
     _, jacobian = constraints.fairness(np.zeros((len(triples), 9)))
-    scalar = linear.rows(jacobian[:, :1, ::3], triples, count)
+    scalar = sparse.rows(jacobian[:, :1, ::3], triples, count)
     scalar = scalar.T @ (scalar * weights[triples[:, 1]][:, None])
     return kron(scalar, np.eye(3), format="csr")

@@ -6,8 +6,6 @@ boundary, so that no pair of vertices must be pinned.  A ring is cut from one bo
 the other; the two banks of the cut differ by the period, and in the plain map the two
 boundaries become parallel lines.  The even map then lets the boundary bend until its scale
 is constant: of all conformal maps it is the one whose scale varies least.
-
-Paper: Sec. 6.2 (beyond the paper).
 """
 
 from typing import NamedTuple
@@ -17,7 +15,8 @@ import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
-from . import adjacency, linear, ties
+from .. import mesh, ties
+from ..solver import sparse
 
 ROUNDS = 100  # of the inverse iteration, at most; five are usual
 STILL = 1e-9  # a change of the map, of its size, that ends the iteration
@@ -54,8 +53,6 @@ def flatten(V, F, loops, boundary="even"):
     runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
     map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
     overlaps itself, too.
-
-    Paper: Sec. 6.2 (beyond the paper).
     """
     if boundary not in ("even", "plain"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
@@ -86,7 +83,7 @@ def flatten(V, F, loops, boundary="even"):
 def _disk(z, energy, loop):
     count = len(z)
     matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
-    inverse = linear.factor(matrix)
+    inverse = sparse.factor(matrix)
     z = _unit_rim(z, loop)
     for _ in range(ROUNDS):
         load = np.zeros(count, dtype=complex)
@@ -155,7 +152,7 @@ def _ring(energy, loops, origin, bank, count):
     row = np.flatnonzero(column >= 0)
     merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
     jump = np.concatenate([bank, np.zeros(k)])
-    x = merge @ linear.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
+    x = merge @ sparse.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
     return x[:k] + bank + 1j * x[k:]
 
 
@@ -184,7 +181,7 @@ def _cut(F, path):
     """(faces, origin, bank) of the triangles cut along a path: bank marks its left copies."""
     start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
     after = np.roll(np.arange(F.size).reshape(-1, 3), -1, axis=1).ravel()
-    twin = adjacency.opposites(F)
+    twin = mesh.opposites(F)
     step = np.full(F.max() + 1, -1)
     step[path[:-1]] = path[1:]
     left = step[start] == end
@@ -215,7 +212,7 @@ def _even(V, loops, flat, energy):
     banks = flat.z - z[flat.origin]  # 0, or the period on one side of the cut
     start, end, loop = _rims(flat, loops, count)
     length = np.linalg.norm(V[flat.origin[end]] - V[flat.origin[start]], axis=1)
-    difference = linear.rows(
+    difference = sparse.rows(
         np.tile([[[1.0, -1.0]]], (len(start), 1, 1)), flat.origin[np.stack([end, start], 1)], count
     )
     jump = banks[end] - banks[start]
@@ -224,7 +221,7 @@ def _even(V, loops, flat, energy):
     bend = difference.T @ diags_array(weight) @ difference
     A = merge.T @ energy @ merge + block_diag([bend, bend])
     hold = 1e-10 * A.diagonal().mean()  # near the last map, wherever the cut is
-    solve = linear.factor((A + hold * eye_array(2 * count)).tocsr())
+    solve = sparse.factor((A + hold * eye_array(2 * count)).tocsr())
     still = merge.T @ (energy @ np.concatenate([banks.real, banks.imag]))
     for _ in range(BENDS):
         edge = difference @ z + jump
@@ -246,7 +243,7 @@ def _rims(flat, loops, count):
     following, owner = np.full(count, -1), np.full(count, -1)
     for number, loop in enumerate(loops):
         following[loop], owner[loop] = np.roll(loop, -1), number
-    half = np.flatnonzero(adjacency.opposites(flat.F) < 0)
+    half = np.flatnonzero(mesh.opposites(flat.F) < 0)
     start, end = flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]
     rim = following[flat.origin[start]] == flat.origin[end]
     return start[rim], end[rim], owner[flat.origin[start[rim]]]
@@ -282,7 +279,7 @@ def _judge(V, F, corners):
 
 def _overlap(flat):
     """The part of the flat surface that is covered more than once."""
-    half = np.flatnonzero(adjacency.opposites(flat.F) < 0)
+    half = np.flatnonzero(mesh.opposites(flat.F) < 0)
     edges = np.stack([flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]], axis=1)
     centres = flat.z[flat.F[:: 1 + len(flat.F) // SAMPLES]].mean(axis=1)
     points, places = (np.stack([z.real, z.imag], axis=1) for z in (flat.z, centres))
