@@ -108,8 +108,8 @@ def _sentence(error):
 def _measure(given):
     V, Q, polygons, notes = paths.read_net(given.net, must_label=False)
     notes += paths.turned(V, Q, given.theta, given.theta0)
-    numbers = report.net(V, Q, polygons, _wanted(given))
-    _say(given, {"file": given.net, "labelled": mesh.is_labelled(Q), **numbers, "notes": notes})
+    found = report.report(V, Q, polygons, **_wanted(given))
+    _say(given, found, given.net, notes, labelled=mesh.is_labelled(Q))
     return DONE
 
 
@@ -129,11 +129,9 @@ def _cover(given):
         tolerance=np.radians(given.tolerance),
         progress=_progress(given),
     )
-    numbers = found.report._asdict()
-    notes = _repairs(given.surface, [*repaired, *numbers.pop("repairs")])
-    for name in ("quads", "theta", "theta0", "max_deviation", "mean_deviation", "flips"):
-        del numbers[name]  # `design.report.net` says them in degrees
-    return _finish(given, found.V, found.Q, (), numbers, notes)
+    notes = _repairs(given.surface, [*repaired, *found.report.repairs])
+    more = {"converged": found.report.converged, "message": found.report.message}
+    return _finish(given, found.V, found.Q, (), found.report, notes, **more)
 
 
 def _web(given):
@@ -149,9 +147,9 @@ def _web(given):
         paths.curves(given.output, net.Q, given.curves),
         force=given.force,
     )
-    numbers = report.net(net.V, net.Q, (), _wanted(given))
+    found = report.report(net.V, net.Q, **_wanted(given))
     rows = {"rows": net.rows, "quads_around": given.m, "message": net.message}
-    _say(given, {"file": given.output, **rows, **numbers, "notes": []})
+    _say(given, found, given.output, [], **rows)
     return DONE
 
 
@@ -186,7 +184,7 @@ def _optimize(given):
         tolerance=np.radians(given.tolerance),
         progress=_progress(given),
     )
-    numbers = {
+    more = {
         "converged": found.converged,
         "message": found.message,
         "steps": len(found.history) - 1,
@@ -194,7 +192,8 @@ def _optimize(given):
         "mu": found.mu,
         "seconds": found.seconds,
     }
-    return _finish(given, found.V, Q, polygons, numbers, notes)
+    about = report.report(found.V, Q, polygons, **_wanted(given))
+    return _finish(given, found.V, Q, polygons, about, notes, **more)
 
 
 def _explore(given):
@@ -253,38 +252,40 @@ def _repairs(path, sentences):
     return [f"{path}: {sentence}" for sentence in dict.fromkeys(sentences)]
 
 
-def _finish(given, V, Q, polygons, numbers, notes):
+def _finish(given, V, Q, polygons, about, notes, **more):
     """Write the net if it is good or to be kept, and say what there is to say: exit code."""
-    numbers = report.plain(numbers)
-    good = numbers["converged"]
+    good = more["converged"]
     written = good or given.keep
     if written:
         lines = paths.curves(given.output, Q, given.curves)
         io.write(given.output, V, Q, lines, polygons, force=given.force)
-    about = report.net(V, Q, polygons, _wanted(given))
-    _say(given, {"file": given.output if written else None, **numbers, **about, "notes": notes})
+    _say(given, about, given.output if written else None, notes, **more)
     if not good:
         what = "this net was written" if written else "nothing was written, --keep does it"
-        raise Off(f"{numbers['message']}; {what}")
+        raise Off(f"{more['message']}; {what}")
     return DONE
 
 
-def _say(given, numbers):
+def _say(given, about, file, notes, **more):
+    """The `Report`, the file and what else there is, in words or as JSON."""
+    known = {"file": file, **report.numbers(about), **more, "notes": notes}
     if given.json:
-        print(json.dumps(numbers, indent=2, allow_nan=False))
+        print(json.dumps(known, indent=2, allow_nan=False))
     elif not given.quiet:
-        print(numbers["file"] or "not written")
-        if "message" in numbers and numbers.get("converged", True):
-            print(numbers["message"])
-        print(report.table(numbers))
-        if "covered" in numbers:
-            print(report.cover(numbers))
-        for note in numbers["notes"]:
+        print(file or "not written")
+        if "message" in known and known.get("converged", True):
+            print(known["message"])
+        print(report.text(about))
+        for note in notes:
             print("note:", note)
 
 
 def _wanted(given):
-    return {name: getattr(given, name, None) for name in ("theta", "theta0", "lam", "mu")}
+    degrees = {name: getattr(given, name, None) for name in report.NAMES}
+    return {
+        name: np.radians(x) if x is not None and name.startswith("theta") else x
+        for name, x in degrees.items()
+    }
 
 
 def _progress(given):

@@ -195,6 +195,16 @@ def spread(values, target=None):
     )
 
 
+def deviations(V, Q, theta=None, theta0=None):
+    """|theta - wanted| and |theta0 - wanted| of every face, (2, f), radians.
+
+    What is wanted is the given angle, or the mean over the net where it is None.
+    """
+    found, wanted = np.stack(angles(V, Q)), (theta, theta0)
+    means = [x.mean() if a is None else a for x, a in zip(found, wanted, strict=True)]
+    return np.abs(found - np.array(means)[:, None])
+
+
 def _normals(d1, d2):
     """Unit normals of the faces and twice their areas."""
     normal = _cross(d1, d2)

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from inetlib import cli, examples, io, mesh, options, paths, solver, surfaces
-from inetlib.design import report
 
 ANGLES = "--theta", "60", "--theta0", "45"
 BLUNT = "--theta", "170", "--theta0", "45"
@@ -357,18 +356,6 @@ def test_figures_are_found_by_the_notebook_that_draws_them():
     folder = cli.ROOT / "notebooks"
     assert cli._notebooks(folder, "fig03") == ["3_3_conformal_grids"]
     assert cli._notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
-
-
-# --- numbers for JSON ---------------------------------------------------------------------
-
-
-def test_plain_numbers_make_json():
-    spread = report.measure.Spread(np.float64(1), np.int64(2), np.inf, np.nan, 0.5)
-    value = report.plain({"a": spread, "b": (np.arange(2), [True, None, "x"])})
-    assert json.loads(json.dumps(value, allow_nan=False)) == {
-        "a": {"mean": 1, "low": 2, "high": None, "max_deviation": None, "mean_deviation": 0.5},
-        "b": [[0, 1], [True, None, "x"]],
-    }
 
 
 # --- what users bring ---------------------------------------------------------------------

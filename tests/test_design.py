@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from inetlib import clean, design, examples, measure, mesh, solver
-from inetlib.design import flatten, overlay
+from inetlib.design import flatten, overlay, report
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
 PAIRS = [(60, 60), (90, 90), (70, 50)]
@@ -531,9 +531,9 @@ def test_examples_are_sound_and_check_their_size(make):
 
 def test_the_report_in_words():
     net = cover(examples.saddle_with_hole(8), (70, 50), count=100)
-    words = design.describe(net.report)
-    assert words.startswith(f"{net.report.quads} quads, theta = 70, theta0 = 50 degrees")
-    assert f"{net.report.winding[0]} steps along u" in words
+    words = report.text(net.report)
+    assert words.startswith(f"{net.report.vertices} vertices, {net.report.quads} quads")
+    assert f"{100 * net.report.covered:.0f} % of the surface is covered" in words
 
 
 # --- the same on every machine ----------------------------------------------------------------

@@ -174,7 +174,7 @@ def test_called_from_a_program_inet_leaves_its_signals_alone(tmp_path, monkeypat
         assert before == [signal.getsignal(number) for number in start.SIGNALS]
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(report, "net", stop)  # after the file
+    monkeypatch.setattr(report, "numbers", stop)  # after the file
     assert cli.main(COVER) == 130
     assert capsys.readouterr() == ("", "inet: stopped\n")
     assert os.listdir(tmp_path) == ["net.obj"]

@@ -14,7 +14,6 @@ from ..solver.problem import Weights
 from ..solver.run import timed
 from . import flatten, overlay
 from .report import Report, area_of, survey
-from .report import describe as describe
 
 NEAR = Weights(fairness=0.02, closeness=0.001, approximation=10.0, boundary=0.0)
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
@@ -89,12 +88,11 @@ def cover(
             net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress, callback)
     with timed(seconds, "report"):
         found = survey(net, layer.Q, theta, theta0, goal, flat)
-    if done and found["distance_max"] > AWAY:
-        words += f", but up to {100 * found['distance_max']:.2g} % of the diagonal off the surface"
+    if done and found.distance_max > AWAY:
+        words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
         words += ": ask for more quads"
-    known = done, words, layer.winding, tuple(surface.repairs), seconds
-    names = "converged", "message", "winding", "repairs", "seconds"
-    return Cover(net, layer.Q, Report(**found, **dict(zip(names, known, strict=True))))
+    known = dict(winding=layer.winding, repairs=tuple(surface.repairs), seconds=seconds)
+    return Cover(net, layer.Q, found._replace(converged=done, message=words, **known))
 
 
 def _check(count, size, direction):

@@ -136,7 +136,7 @@ def _solve(given, *options):
             limit = np.inf if iterations is None else iterations
             run.ratio(log, via, stride, shape_steps, residual == "quadratic", limit)
     (flips, deviation), V, s = log.best
-    good = deviation <= log.tolerance and flips == 0
+    good = bool(deviation <= log.tolerance and flips == 0)
     lam, mu = (float(x) for x in np.exp(goals.logs(given.goal, s)[0]))
     angles = (float(x) for x in exact_angles(lam, mu))
     message = _message(good, log.stopped, flips, deviation, len(log.history) - 1)
