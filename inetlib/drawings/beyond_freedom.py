@@ -68,12 +68,13 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     return found
 
 
+@publish.drawn
 def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
     """Six wishes at the same two angles: five are granted, the last one is not.
 
     theta, theta0: radians; azimuth, elevation: the camera, degrees.  Black: the vertices
     that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
-    of their deviation.  Returns a `publish.Drawing`.
+    of their deviation.
 
     Paper: Sec. 6.1 (beyond the paper: B8).
     """
@@ -94,11 +95,8 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
     claims = {f"{k} converged": bool(x[2].converged) for k, x in found.items()}
     for letter, (_, Q, result) in good.items():
         claims |= _optimised.claims({letter: result}, Q)
-    return publish.Drawing(
-        "beyond_freedom",
+    return (
         figure,
-        "inetlib.drawings.beyond_freedom.draw",
-        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
         {k: r.V for k, (_, _, r) in good.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
         claims,

@@ -78,12 +78,13 @@ def _domed(V, dome, wave):
     return V / np.linalg.norm(np.ptp(V, axis=0))
 
 
+@publish.drawn
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 
     theta, theta0: radians, of the nets; azimuth, elevation: the camera, degrees.  Edges have
     the colours of u and v; where a mesh is refused, the names spread from one face until they
-    meet in disagreement along the dotted edges.  Returns a `publish.Drawing`.
+    meet in disagreement along the dotted edges.
 
     Paper: Sec. 4.1 (labels; beyond the paper: B9).
     """
@@ -107,11 +108,8 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
     numbers = {}
     for letter, (_, Q, _, result) in found.items():
         numbers |= _optimised.claims({letter: result}, Q)
-    return publish.Drawing(
-        "beyond_labels",
+    return (
         figure,
-        "inetlib.drawings.beyond_labels.draw",
-        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
         {k: r.V for k, (_, _, _, r) in found.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, _, r in found.values()],
         claims | numbers,

@@ -8,11 +8,12 @@ GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
 
 
+@publish.drawn
 def draw(theta=80, theta0=55, alone=60, azimuth=-100, elevation=58):
     """Two quads in space, seen from outside, each with its inscribed parallelogram.
 
     theta, theta0: angles of the left quad, degrees; alone: both angles of the right one;
-    azimuth, elevation: the camera, degrees.  Returns a `publish.Drawing`.
+    azimuth, elevation: the camera, degrees.
 
     Paper: Fig. 4.
     """
@@ -35,11 +36,7 @@ def draw(theta=80, theta0=55, alone=60, azimuth=-100, elevation=58):
     for ax in axes.values():
         ax.update_datalim([corners.min(axis=0) - 0.2, corners.max(axis=0) + 0.2])
         ax.autoscale_view()
-    parameters = {"theta": theta, "theta0": theta0, "alone": alone}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig04", figure, "inetlib.drawings.fig04.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _quad(theta, theta0):

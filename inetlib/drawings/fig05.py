@@ -13,12 +13,13 @@ LINES = {"u": "$v$ = const.", "v": "$u$ = const.", "d1": "$u+v$ = const.", "d2":
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
+@publish.drawn
 def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevation=22):
     """An I-web on a catenoid with its parameter square; below, a coarse mesh on it.
 
     theta, theta0: angles of the web, degrees; lines, cells: steps of the smooth web (even)
     and of the mesh (odd); size: of the parameter square; azimuth, elevation: the camera,
-    degrees.  Returns a `publish.Drawing`.
+    degrees.
 
     Paper: Fig. 5.
     """
@@ -43,21 +44,11 @@ def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevatio
     plot.panel(axes["B"], "B", "a triangulated grid")
     plot.panel(axes["B'"], "B'", "the same grid as a mesh")
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
-    parameters = {"theta": theta, "theta0": theta0, "lines": lines, "cells": cells, "size": size}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
     claims = {
         "sampled_net_max_deviation_deg": _deviation(net, asked),
         "sampled_net_half_size_max_deviation_deg": _deviation(finer, asked),
     }
-    return publish.Drawing(
-        "fig05",
-        figure,
-        "inetlib.drawings.fig05.draw",
-        parameters,
-        {"domain": domain[0], "mesh": net[0]},
-        [(*domain, *asked)],
-        claims,
-    )
+    return figure, {"domain": domain[0], "mesh": net[0]}, [(*domain, *asked)], claims
 
 
 def _catenoid(z):

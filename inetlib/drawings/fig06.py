@@ -14,6 +14,7 @@ SHAPES = {
 }
 
 
+@publish.drawn
 def draw(angle=60, cells=6, size=1.5, azimuth=-90, elevation=20):
     """Four isogonal nets on a sphere with their black quads, and one parallelogram of each.
 
@@ -46,11 +47,7 @@ def draw(angle=60, cells=6, size=1.5, azimuth=-90, elevation=20):
     for name in asked:
         axes[name].update_datalim([flat.min(axis=0), flat.max(axis=0)])
         axes[name].autoscale_view()
-    parameters = {"angle": angle, "cells": cells, "size": size}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig06", figure, "inetlib.drawings.fig06.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _domain(target, cells, size):

@@ -22,13 +22,14 @@ TITLES = {
 }
 
 
+@publish.drawn
 def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth=-90, elevation=20):
     """One net in the plane, rolled up in four steps, on a cone and along a space curve.
 
     theta, theta0: angles of the net, degrees; cells: faces each way, those along u close
     around the cylinder of curvature k = 1; geodesic, edited: control points, scaled to the
     length of the diagonal of the net, which becomes that curve; azimuth, elevation: the
-    camera, degrees.  Returns a `publish.Drawing`.
+    camera, degrees.
 
     Paper: Fig. 7.
     """
@@ -47,12 +48,7 @@ def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth
     for name, points in (("G", geodesic), ("H", edited)):
         _polygon(axes[name], view, _along(z, points)[1])
     _same_scale(axes)
-    parameters = {"theta": theta, "theta0": theta0, "cells": cells, "azimuth": azimuth}
-    parameters |= {"elevation": elevation, "geodesic": [list(p) for p in geodesic]}
-    parameters["edited"] = [list(p) for p in edited]
-    return publish.Drawing(
-        "fig07", figure, "inetlib.drawings.fig07.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _stages(maps, z, asked):

@@ -6,11 +6,12 @@ from .. import mesh, parallelogram, plot, publish, surfaces
 from . import _isothermal
 
 
+@publish.drawn
 def draw(around=20, rows=8, azimuth=-80, elevation=20):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 
     around: squares of a full turn of the catenoid; rows: of squares; azimuth, elevation: the
-    camera, degrees.  Returns a `publish.Drawing`.
+    camera, degrees.
 
     Paper: Fig. 8.
     """
@@ -33,17 +34,8 @@ def draw(around=20, rows=8, azimuth=-80, elevation=20):
     }
     off = max(publish.deviations([(V, Q, *_isothermal.ANGLES)]))
     claims["sampled_net_max_deviation_deg"] = round(off, 6)
-    parameters = {"around": around, "rows": rows, "azimuth": azimuth, "elevation": elevation}
     flat = np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], axis=1)
-    return publish.Drawing(
-        "fig08",
-        figure,
-        "inetlib.drawings.fig08.draw",
-        parameters,
-        {"net": V, "domain": flat},
-        [(flat, Q, *_isothermal.ANGLES)],
-        claims,
-    )
+    return figure, {"net": V, "domain": flat}, [(flat, Q, *_isothermal.ANGLES)], claims
 
 
 def _squares(ax):

@@ -32,13 +32,14 @@ TITLES = {
 }
 
 
+@publish.drawn
 def draw(around=20, t=45):
     """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 
     around: steps of a full turn of u; t: of the conjugate minimal surface, degrees.  Column 2
     is column 1 optimised to (80, 45) degrees, column 4 is column 3, the images of column 1
     under inversions, optimised to (50, 50), both on their surfaces.  In each picture one
-    u-curve, in column 1 a loxodrome, is highlighted.  Returns a `publish.Drawing`.
+    u-curve, in column 1 a loxodrome, is highlighted.
 
     Paper: Fig. 9.
     """
@@ -66,10 +67,7 @@ def draw(around=20, t=45):
     for row in distances(glides):
         claims[f"off_surface_{row.panel}"] = round(row.off, 6)
         claims[f"hausdorff_{row.panel}"] = [round(row.there, 6), round(row.back, 6)]
-    parameters = {"around": around, "t": t}
-    return publish.Drawing(
-        "fig09", figure, "inetlib.drawings.fig09.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def optimised(around=20, t=45):

@@ -6,11 +6,12 @@ from .. import moebius, plot, publish, surfaces
 from . import _isothermal
 
 
+@publish.drawn
 def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 
     around: steps of a full turn; rows: of the net; top: its uppermost parallel, in steps
-    above the equator; azimuth, elevation: the camera, degrees.  Returns a `publish.Drawing`.
+    above the equator; azimuth, elevation: the camera, degrees.
 
     Paper: Fig. 10.
     """
@@ -30,13 +31,8 @@ def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
     for name, points in (("sphere", V), ("plane", W)):
         off = max(publish.deviations([(points, Q, *_isothermal.ANGLES)]))
         claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
-    parameters = {"around": around, "rows": rows, "top": top}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig10",
+    return (
         figure,
-        "inetlib.drawings.fig10.draw",
-        parameters,
         {"sphere": V, "plane": W},
         [(np.stack([z.real.ravel(), z.imag.ravel(), 0 * W[:, 0]], 1), Q, *_isothermal.ANGLES)],
         claims,

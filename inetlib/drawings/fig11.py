@@ -12,12 +12,13 @@ HALO = [withStroke(linewidth=2.2, foreground="white")]
 TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
 
 
+@publish.drawn
 def draw(theta=75, theta0=60, m=18, profile=None, azimuth=54, elevation=24):
     """A strip between two loxodromes, the exact DI-net of all strips, and its 4-web.
 
     theta, theta0: degrees; m: quads around the axis; profile: a `surfaces.Profile`, default
     the vase; azimuth, elevation: the camera, degrees, A at azimuth 0 (take a negative
-    azimuth for theta0 > 90).  Returns a `publish.Drawing`.
+    azimuth for theta0 > 90).
 
     Paper: Fig. 11.
     """
@@ -40,17 +41,7 @@ def draw(theta=75, theta0=60, m=18, profile=None, azimuth=54, elevation=24):
     lam, mu = measure.ratios(net.V, net.Q)
     claims = {"rows": int(net.rows), "lam": round(float(lam[0]), 9), "mu": round(float(mu[0]), 9)}
     claims |= {"flips": int(measure.quality(net.V, net.Q).flips)}
-    parameters = {"theta": theta, "theta0": theta0, "m": m}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig11",
-        figure,
-        "inetlib.drawings.fig11.draw",
-        parameters,
-        {"net": net.V},
-        [(net.V, net.Q, *asked)],
-        claims,
-    )
+    return figure, {"net": net.V}, [(net.V, net.Q, *asked)], claims
 
 
 # --- the surface ----------------------------------------------------------------------------

@@ -48,12 +48,13 @@ def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
     return V, Q, found
 
 
+@publish.drawn
 def draw(m=20, n=20, azimuth=-62, elevation=42):
     """A patch and the five isogonal nets it is optimised to, with their parallelograms.
 
     m, n: quads each way; azimuth, elevation: the camera, degrees.  The start is coloured by
     the larger deviation of theta and theta0 from their means.  Each panel shows four faces
-    enlarged.  Returns a `publish.Drawing`.
+    enlarged.
 
     Paper: Fig. 12.
     """
@@ -71,13 +72,9 @@ def draw(m=20, n=20, azimuth=-62, elevation=42):
         plot.panel(axes[letter], letter, TITLES[letter])
         _words(axes[letter], letter, result)
     _optimised.align(list(axes.values()), 0.42)
-    parameters = {"m": m, "n": n, "azimuth": azimuth, "elevation": elevation}
     data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
-    return publish.Drawing(
-        "fig12",
+    return (
         figure,
-        "inetlib.drawings.fig12.draw",
-        parameters,
         data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},

@@ -54,12 +54,13 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
     return V, Q, polygon, found
 
 
+@publish.drawn
 def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
     """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
 
     dome, wave: of the `start`; azimuth, elevation: the camera, degrees.  The images keep the
     connectivity, and the angles up to the size of the quads: they are coloured by the larger
-    deviation of theta and theta0 from those of the net.  Returns a `publish.Drawing`.
+    deviation of theta and theta0 from those of the net.
 
     Paper: Fig. 13.
     """
@@ -86,11 +87,8 @@ def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
     numbers = {f"{k}'_max_deviation_deg": round(float(x.max()), 6) for k, x in off.items()}
     data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
     data |= {f"image_{k}": W for k, W in images.items()}
-    return publish.Drawing(
-        "fig13",
+    return (
         figure,
-        "inetlib.drawings.fig13.draw",
-        {"dome": dome, "wave": wave, "azimuth": azimuth, "elevation": elevation},
         data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | numbers,
