@@ -71,14 +71,13 @@ def deviations(nets):
     """
     if not nets:
         return np.nan, np.nan
-    off = [
-        [
-            measure.spread(a, b).max_deviation
-            for a, b in zip(measure.angles(V, Q), asked, strict=True)
-        ]
-        for V, Q, *asked in nets
-    ]
+    off = [measure.deviations(V, Q, *asked).max(axis=1) for V, Q, *asked in nets]
     return tuple(float(x) for x in np.degrees(np.max(off, axis=0)))
+
+
+def off(V, Q, angles):
+    """The larger deviation of both angles (radians) over all faces: degrees, 6 decimals."""
+    return round(float(np.degrees(measure.deviations(V, Q, *angles).max())), 6)
 
 
 def save(drawing, folder):

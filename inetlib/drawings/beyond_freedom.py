@@ -81,7 +81,10 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
     figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
     view = plot.camera(*np.radians([azimuth, elevation]))
     found, stay = nets(theta, theta0), curves()
-    off = {k: deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
+    off = {
+        k: np.degrees(measure.deviations(r.V, Q, theta, theta0).max(axis=0))
+        for k, (_, Q, r) in found.items()
+    }
     scale = Normalize(0, ties.next_multiple(off["F"].max(), 5))
     for letter, (V, Q, result) in found.items():
         colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
@@ -101,15 +104,6 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
         [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
         claims,
     )
-
-
-def deviation(V, Q, theta, theta0):
-    """The larger deviation of theta and theta0 of each face, degrees (f,).
-
-    Paper: Sec. 6.1 (beyond the paper: B8).
-    """
-    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), (theta, theta0), strict=True)]
-    return np.degrees(np.max(off, axis=0))
 
 
 def _closed(V, Q):

@@ -45,8 +45,8 @@ def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevatio
     plot.panel(axes["B'"], "B'", "the same grid as a mesh")
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
     claims = {
-        "sampled_net_max_deviation_deg": _deviation(net, asked),
-        "sampled_net_half_size_max_deviation_deg": _deviation(finer, asked),
+        "sampled_net_max_deviation_deg": publish.off(*net, asked),
+        "sampled_net_half_size_max_deviation_deg": publish.off(*finer, asked),
     }
     return figure, {"domain": domain[0], "mesh": net[0]}, [(*domain, *asked)], claims
 
@@ -74,10 +74,6 @@ def _families(n, samples=2):
 
 def _mesh(surface, cells):
     return surface(_points(cells)), mesh.grid_quads(cells, cells)
-
-
-def _deviation(net, asked):
-    return round(max(publish.deviations([(*net, *asked)])), 6)
 
 
 def _square(ax, n):
@@ -122,11 +118,7 @@ def _faces(ax, view, V, Q):
     middle = len(Q) // 2
     fill = plot.shade(V, Q, depth=0.25)
     fill[middle] = to_rgb(plot.FILL)
-    lines = [
-        (V[chain], plot.COLOURS[name], 1.1)
-        for name, chains in mesh.polylines(Q)._asdict().items()
-        for chain in chains
-    ]
+    lines = plot.families(V, Q, dict.fromkeys(plot.COLOURS, 1.1))
     plot.scene(ax, view, V, Q, fill, lines)
     corners = V[Q[middle]]
     flat = view(corners)[0]

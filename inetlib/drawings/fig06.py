@@ -1,7 +1,6 @@
 """Fig. 6: the special cases lam = 1, mu = 1, lam = mu and lam = mu = 1."""
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from .. import conformal, mesh, parallelogram, plot, publish
 
@@ -40,9 +39,8 @@ def draw(angle=60, cells=6, size=1.5, azimuth=-90, elevation=20):
         axes[name.lower()].text(0, -0.6, SHAPES[name], ha="center", va="top")
         nets.append((*conformal.quads(z), *target))
         data |= {f"net_{name}": V, f"domain_{name}": nets[-1][0]}
-        off = max(publish.deviations([(V, Q, *target)]))
         claims |= {f"lam_{name}": round(float(lam), 9), f"mu_{name}": round(float(mu), 9)}
-        claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
+        claims[f"sampled_net_{name}_max_deviation_deg"] = publish.off(V, Q, target)
     flat = view(np.concatenate([data[f"net_{name}"] for name in asked]))[0]
     for name in asked:
         axes[name].update_datalim([flat.min(axis=0), flat.max(axis=0)])
@@ -66,16 +64,9 @@ def _sphere(z):
 
 def _net(ax, view, V, Q):
     """A net in space: black quads dark, the corners left of its faces light, four a face."""
-    board = mesh.checkerboard(V, Q)
-    points, black = np.concatenate([V, board.V]), board.black + len(V)
-    corners = [np.stack([black[:, k - 1], Q[:, k], black[:, k], black[:, k]], 1) for k in range(4)]
-    light = np.concatenate(corners)
-    fill = [
-        plot.shade(points, black, to_rgb("#6f8fbf"), depth=0.3),
-        plot.shade(points, light, depth=0.2),
-    ]
-    families = mesh.polylines(Q)._asdict()
-    lines = [(V[c], plot.COLOURS[name], 0.9) for name in ("u", "v") for c in families[name]]
+    points, black, light = plot.cells(V, Q)
+    fill = [plot.shade(points, black, plot.DARK, depth=0.3), plot.shade(points, light, depth=0.2)]
+    lines = plot.families(V, Q, {"u": 0.9, "v": 0.9})
     plot.scene(ax, view, points, np.concatenate([black, light]), np.concatenate(fill), lines)
 
 

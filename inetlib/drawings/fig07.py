@@ -1,9 +1,8 @@
 """Fig. 7: a planar sheared grid and developable surfaces that it is bent into."""
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
-from .. import conformal, developable, mesh, plot, publish
+from .. import conformal, developable, plot, publish
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
 HIGH = 8.2  # columns are as wide as a panel is high
@@ -57,8 +56,7 @@ def _stages(maps, z, asked):
     data, claims = {"domain": domain}, {}
     for name, bend in maps.items():
         data[f"net_{name}"] = bend(z).reshape(-1, 3)
-        off = max(publish.deviations([(data[f"net_{name}"], Q, *asked)]))
-        claims[f"chords_{name}_max_deviation_deg"] = round(off, 6) + 0.0
+        claims[f"chords_{name}_max_deviation_deg"] = publish.off(data[f"net_{name}"], Q, asked)
         stretch = [
             np.linalg.norm(developable.tangent(bend, z, edge / abs(edge)), axis=-1)
             for edge in (z[1, 0] - z[0, 0], z[0, 1] - z[0, 0])
@@ -94,13 +92,9 @@ def _along(z, points):
 def _sheet(ax, view, bend, z):
     """Black quads dark, the rest light, u- and v-curves, and the diagonal of the net."""
     V, Q = conformal.quads(z)
-    board = mesh.checkerboard(V, Q)
-    flat, black = np.concatenate([V, board.V]), board.black + len(V)
+    flat, black, light = plot.cells(V, Q, white=True)
     points = bend(flat[:, 0] + 1j * flat[:, 1])
-    rim = np.bincount(Q.ravel())[Q] < 4  # the white quads leave triangles along the rim
-    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)[rim]
-    light = np.concatenate([board.white + len(V), corners])
-    shades = [plot.shade(points, black, to_rgb("#6f8fbf"), LIGHT, 0.4)]
+    shades = [plot.shade(points, black, plot.DARK, LIGHT, 0.4)]
     shades += [plot.shade(points, light, light=LIGHT, depth=0.25)]
     lines = [
         (bend(_halves(line)), plot.COLOURS[name], 0.7)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .. import mesh, parallelogram, plot, publish, surfaces
+from .. import parallelogram, plot, publish, surfaces
 from . import _isothermal
 
 
@@ -32,8 +32,7 @@ def draw(around=20, rows=8, azimuth=-80, elevation=20):
         "theta_deg": round(float(np.degrees(_isothermal.ANGLES[0])), 9),
         "theta0_deg": round(float(np.degrees(_isothermal.ANGLES[1])), 9),
     }
-    off = max(publish.deviations([(V, Q, *_isothermal.ANGLES)]))
-    claims["sampled_net_max_deviation_deg"] = round(off, 6)
+    claims["sampled_net_max_deviation_deg"] = publish.off(V, Q, _isothermal.ANGLES)
     flat = np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], axis=1)
     return figure, {"net": V, "domain": flat}, [(flat, Q, *_isothermal.ANGLES)], claims
 
@@ -73,12 +72,9 @@ def _text(ax, place, text, size=8):
 
 def _surface(ax, view, V, Q):
     """The net with its parallelograms dark, the squares' other edges thin and grey."""
-    board = mesh.checkerboard(V, Q)
-    points, black = np.concatenate([V, board.V]), board.black + len(V)
-    corners = [np.stack([black[:, k - 1], Q[:, k], black[:, k], black[:, k]], 1) for k in range(4)]
-    light = np.concatenate(corners)
-    dark = plot.shade(points, black, "#6f8fbf", depth=0.3)
+    points, black, light = plot.cells(V, Q)
+    dark = plot.shade(points, black, plot.DARK, depth=0.3)
     fill = np.concatenate([dark, plot.shade(points, light, depth=0.2)])
-    lines = _isothermal.coloured(V, Q, {"d1": 0.5, "v": 1.0, "u": 1.0})
+    lines = plot.families(V, Q, {"d1": 0.5, "v": 1.0, "u": 1.0})
     lines = [(p, plot.GREY if w == 0.5 else c, w) for p, c, w in lines]
     plot.scene(ax, view, points, np.concatenate([black, light]), fill, lines)

@@ -55,8 +55,8 @@ def draw(around=20, t=45):
         if panel[1] == "1":
             nets.append((np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], 1), Q))
         data[f"net_{panel}"] = V
-        off = max(publish.deviations([(V, Q, *_isothermal.ANGLES)]))
-        claims[f"sampled_net_{panel}_max_deviation_deg"] = round(off, 6)
+        off = publish.off(V, Q, _isothermal.ANGLES)
+        claims[f"sampled_net_{panel}_max_deviation_deg"] = off
     nets = [(V, Q, *_isothermal.ANGLES) for V, Q in nets]
     glides = optimised(around, t)
     for panel, g in glides.items():
@@ -116,7 +116,7 @@ def _starts(around, t):
 def _panel(ax, panel, V, Q, curve):
     letter, column = panel[0], int(panel[1])
     view = plot.camera(*np.radians((CAMERAS if column < 3 else IMAGE_CAMERAS)[letter]))
-    lines = _isothermal.coloured(V, Q, {"v": 0.6, "u": 0.6})
+    lines = plot.families(V, Q, {"v": 0.6, "u": 0.6})
     lines.append((curve, plot.COLOURS["u"], 2.2))
     scene = plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
     _lighter.lighter(scene).set_clip_on(False)  # a smaller file

@@ -29,8 +29,8 @@ def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
     plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
     claims = {}
     for name, points in (("sphere", V), ("plane", W)):
-        off = max(publish.deviations([(points, Q, *_isothermal.ANGLES)]))
-        claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
+        off = publish.off(points, Q, _isothermal.ANGLES)
+        claims[f"sampled_net_{name}_max_deviation_deg"] = off
     return (
         figure,
         {"sphere": V, "plane": W},
@@ -40,7 +40,7 @@ def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
 
 
 def _sphere(ax, view, V, Q, curve):
-    lines = _isothermal.coloured(V, Q, {"v": 0.7, "u": 0.7})
+    lines = plot.families(V, Q, {"v": 0.7, "u": 0.7})
     lines.append((curve, plot.COLOURS["u"], 2.6))
     plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
     outline = np.exp(2j * np.pi * np.arange(181) / 180)

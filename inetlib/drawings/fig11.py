@@ -114,7 +114,7 @@ def _inside(ax, corners, theta, theta0):
     """Its parallelogram: the angle theta between the sides, theta0 between the diagonals."""
     c, middle = plot.COLOURS, (corners + np.roll(corners, -1, axis=0)) / 2
     left, low, right, top = 1.35 * middle
-    plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], revolution.DARK, zorder=0)
+    plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], plot.DARK, zorder=0)
     plot.curves(ax, [[left, low], [right, top]], c["d1"], 2)
     plot.curves(ax, [[left, top], [low, right]], c["d2"], 2)
     plot.curves(ax, [[left, right]], c["u"], 2)

@@ -62,7 +62,7 @@ def draw(m=20, n=20, azimuth=-62, elevation=42):
     figure, axes = plot.canvas([["start", "A", "B"], ["C", "D", "E"]], 7.4, 5.8)
     view = plot.camera(*np.radians([azimuth, elevation]))
     at = _four(m, n)
-    off = _deviation(V, Q)
+    off = np.degrees(measure.deviations(V, Q).max(axis=0))  # from their means
     scale = Normalize(0, ties.next_multiple(off.max(), 5))
     _panel(axes["start"], view, V, Q, at, _optimised.DEVIATION(scale(off))[:, :3])
     axes["start"].set_title("the start", loc="left")
@@ -79,11 +79,6 @@ def draw(m=20, n=20, azimuth=-62, elevation=42):
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
     )
-
-
-def _deviation(V, Q):
-    """The larger deviation of theta and theta0 of each face from the means, degrees."""
-    return np.degrees(np.max([np.abs(x - x.mean()) for x in measure.angles(V, Q)], axis=0))
 
 
 def _four(m, n):

@@ -68,7 +68,10 @@ def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
     figure, axes = plot.canvas([["start", "A", "B"], ["steps", "A'", "B'"]], 7.4, 5.6)
     view = plot.camera(*np.radians([azimuth, elevation]))
     images = {k: moebius.apply(moebius.inversion(CENTRE, RADIUS), r.V) for k, r in found.items()}
-    off = {k: _deviation(images[k], Q, r) for k, r in found.items()}
+    off = {
+        k: np.degrees(measure.deviations(images[k], Q, r.theta, r.theta0).max(axis=0))
+        for k, r in found.items()
+    }
     scale = Normalize(0, ties.next_multiple(max(x.max() for x in off.values()), 0.1))
     four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
@@ -93,13 +96,6 @@ def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
         _optimised.claims(found, Q) | numbers,
     )
-
-
-def _deviation(V, Q, result):
-    """The larger deviation of theta and theta0 of each face from those of the net, degrees."""
-    asked = result.theta, result.theta0
-    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), asked, strict=True)]
-    return np.degrees(np.max(off, axis=0))
 
 
 def _words(theta, theta0):
