@@ -20,6 +20,7 @@ COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 DARK = "#6f8fbf"  # inscribed parallelograms in space
 STYLE = files("inetlib") / "inet.mplstyle"
+DEGREE = float(np.pi / 180)
 ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on every machine
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from inetlib import measure, mesh, moebius, solver
-from inetlib.drawings import _optimised, fig12, fig13
+from inetlib.drawings import fig12, fig13, patches
 from inetlib.parallelogram import angles as exact_angles
 
 STEPS = 17  # of the paper's runs
@@ -51,8 +51,8 @@ def test_the_patch_becomes_isogonal(patch, letter):
     good(found[letter], Q)
     names = "theta", "theta0"
     for name, values in zip(names, measure.angles(found[letter].V, Q), strict=True):
-        wanted = fig12.SETTINGS[letter].get(name, np.degrees(values.mean()))
-        np.testing.assert_allclose(np.degrees(values), wanted, atol=1e-9)
+        wanted = fig12.SETTINGS[letter].get(name, values.mean())
+        np.testing.assert_allclose(values, wanted, atol=np.radians(1e-9))
 
 
 def test_the_parallelograms_are_what_the_titles_say(patch):
@@ -140,7 +140,7 @@ def test_drawings_list_their_nets_and_steps(module):
 def test_four_coloured_faces_are_laid_into_their_plane(patch):
     _, Q, found = patch
     _, ax = plt.subplots()
-    _optimised.enlarged(ax, found["D"].V, Q, fig12._four(20, 20))
+    patches.enlarged(ax, found["D"].V, Q, fig12._four(20, 20))
     quads = [p.vertices[:4] for p in ax.collections[1].get_paths()]
     assert len(quads) == 4
     for quad in quads:

@@ -3,8 +3,7 @@
 import numpy as np
 
 from .. import mesh, parallelogram, planar, plot, publish
-
-DEGREE = float(np.pi / 180)
+from ..plot import DEGREE
 
 
 @publish.drawn

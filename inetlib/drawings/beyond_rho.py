@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.patheffects import withStroke
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import net, text_at
+from ..plot import DEGREE
+from .abcd import net, text_at
 
 COLOURS = plot.COLOURS
-DEGREE = np.pi / 180
 ANGLES = [30, 60, 90, 120, 150]  # the arcs and rays drawn, degrees
 RATIOS = [2.5, 1.6, 1, 1 / 1.6, 1 / 2.5]  # the circles of mu drawn, of lam without 1
 SPECIAL = {  # degrees: the label and its place, right or left of the point

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from .. import conformal, loxodrome, measure, mesh, plot, publish, reference, solver, surfaces
+from ..plot import DEGREE
 
-DEGREE = np.pi / 180
 SIZES = 8, 16, 32, 64
 NAMES = {
     "z2": "$z^2$",

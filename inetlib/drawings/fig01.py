@@ -6,9 +6,9 @@ Paper: Fig. 1.
 import numpy as np
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import angle_at, beside, corners, frame, net, text_at
+from ..plot import DEGREE
+from .abcd import angle_at, beside, corners, frame, net, text_at
 
-DEGREE = np.pi / 180
 SHADES = "#a9bfdd", "#f3d3c0"  # of the triangles ABD and ODC
 
 

@@ -6,9 +6,9 @@ Paper: Fig. 2.
 import numpy as np
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import angle_at, beside, corners, frame, net, text_at
+from ..plot import DEGREE
+from .abcd import angle_at, beside, corners, frame, net, text_at
 
-DEGREE = np.pi / 180
 RATIOS = r"\lambda,\,\mu", r"1/\lambda,\,\mu", r"\lambda,\,1/\mu", r"1/\lambda,\,1/\mu"
 SURDS = {60: r"(1+\sqrt{5})/2", 45: r"(\sqrt{2}+\sqrt{6})/2", 30: r"(\sqrt{3}+\sqrt{7})/2"}
 

@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 
 from .. import conformal, measure, mesh, parallelogram, plot, publish
+from ..plot import DEGREE
 
 STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
 SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
@@ -14,19 +15,27 @@ HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
 @publish.drawn
-def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevation=22):
+def draw(
+    theta=75 * DEGREE,
+    theta0=65 * DEGREE,
+    lines=6,
+    cells=3,
+    size=1.45,
+    azimuth=-85 * DEGREE,
+    elevation=22 * DEGREE,
+):
     """An I-web on a catenoid with its parameter square; below, a coarse mesh on it.
 
-    theta, theta0: angles of the web, degrees; lines, cells: steps of the smooth web (even)
+    theta, theta0: angles of the web, radians; lines, cells: steps of the smooth web (even)
     and of the mesh (odd); size: of the parameter square; azimuth, elevation: the camera,
-    degrees.
+    radians.
 
     Paper: Fig. 5.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     rho = parallelogram.rho(*parallelogram.ratios(*asked))
     figure, axes = plot.canvas([["A", "A'"], ["B", "B'"]], 7.2, 6.4, ratios=[1, 1.35])
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
 
     def surface(uv):
         return _catenoid(size * (uv[..., 0] + rho * uv[..., 1]))

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .. import conformal, developable, plot, publish
+from ..plot import DEGREE
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
 HIGH = 8.2  # columns are as wide as a panel is high
@@ -22,24 +23,32 @@ TITLES = {
 
 
 @publish.drawn
-def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth=-90, elevation=20):
+def draw(
+    theta=60 * DEGREE,
+    theta0=45 * DEGREE,
+    cells=8,
+    geodesic=GEODESIC,
+    edited=EDITED,
+    azimuth=-90 * DEGREE,
+    elevation=20 * DEGREE,
+):
     """One net in the plane, rolled up in four steps, on a cone and along a space curve.
 
-    theta, theta0: angles of the net, degrees; cells: faces each way, those along u close
+    theta, theta0: angles of the net, radians; cells: faces each way, those along u close
     around the cylinder of curvature k = 1; geodesic, edited: control points, scaled to the
     length of the diagonal of the net, which becomes that curve; azimuth, elevation: the
-    camera, degrees.
+    camera, radians.
 
     Paper: Fig. 7.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     z = conformal.sheared_grid(*asked, cells, cells, edge=2 * np.pi / cells)
     z = z - z.mean()
     maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")}
     maps |= {"F": _cone(z), "G": _along(z, geodesic)[0]}
     maps["H"] = _along(z, edited)[0]
     figure, axes = plot.canvas(_columns(), 7.6, 3.6)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     data, claims, nets = _stages(maps, z, asked)
     for name, bend in maps.items():
         _sheet(axes[name], view, bend, z)

@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 
 from .. import loxodrome, measure, parallelogram, plot, publish, surfaces
+from ..plot import DEGREE
 from . import revolution
 
 STRIP = to_rgb("#9db9de")
@@ -13,21 +14,28 @@ TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
 
 
 @publish.drawn
-def draw(theta=75, theta0=60, m=18, profile=None, azimuth=54, elevation=24):
+def draw(
+    theta=75 * DEGREE,
+    theta0=60 * DEGREE,
+    m=18,
+    profile=None,
+    azimuth=54 * DEGREE,
+    elevation=24 * DEGREE,
+):
     """A strip between two loxodromes, the exact DI-net of all strips, and its 4-web.
 
-    theta, theta0: degrees; m: quads around the axis; profile: a `surfaces.Profile`, default
-    the vase; azimuth, elevation: the camera, degrees, A at azimuth 0 (take a negative
-    azimuth for theta0 > 90).
+    theta, theta0: radians; m: quads around the axis; profile: a `surfaces.Profile`, default
+    the vase; azimuth, elevation: the camera, radians, A at azimuth 0 (take a negative
+    azimuth for obtuse theta0).
 
     Paper: Fig. 11.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     net = loxodrome.web(profile or surfaces.vase_profile(), *asked, m)
     figure, axes = plot.canvas([list("ABC"), list("abc")], 7.0, 5.8)
     axes["A"].get_gridspec().set_height_ratios([2.3, 1])
     figure.get_layout_engine().set(h_pad=0.1)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     _strip(axes["A"], view, net)
     revolution.black_quads(axes["B"], view, net)
     revolution.web(axes["C"], view, net, ("u", "v", "d1", "d2"))
@@ -121,9 +129,15 @@ def _inside(ax, corners, theta, theta0):
     plot.curves(ax, [[low, top]], c["v"], 2)
     plot.angle(ax, left, low - left, top - left, 0.2)
     plot.angle(ax, np.zeros(2), right, top, 0.16)
-    ax.text(left[0] - 0.05, left[1], rf"${theta}\degree$", ha="right", va="center")
+    ax.text(left[0] - 0.05, left[1], rf"${theta / DEGREE:.4g}\degree$", ha="right", va="center")
     half = right / np.linalg.norm(right) + top / np.linalg.norm(top)
-    ax.text(*(0.18 * half), rf"${theta0}\degree$", ha="center", va="center", path_effects=HALO)
+    ax.text(
+        *(0.18 * half),
+        rf"${theta0 / DEGREE:.4g}\degree$",
+        ha="center",
+        va="center",
+        path_effects=HALO,
+    )
     text = r"sides: $\theta$, diagonals: $\theta_0$"
     ax.text(0, -0.72, text, ha="center", va="center")
     _frame(ax)
