@@ -72,6 +72,8 @@ def deviations(nets):
     if not nets:
         return np.nan, np.nan
     off = [measure.deviations(V, Q, *asked).max(axis=1) for V, Q, *asked in nets]
+    if not np.isfinite(off).all():
+        raise ValueError("the angles that a net should have are no finite numbers")
     return tuple(float(x) for x in np.degrees(np.max(off, axis=0)))
 
 

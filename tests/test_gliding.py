@@ -173,7 +173,7 @@ def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(glides, panel):
     seen = []
     for change in (lambda scene: None, lighter.lighter):
         figure, axes = plot.canvas([["one"]], 3, 3)
-        lines = fig09.isothermal.coloured(g.result.V, g.Q, {"v": 0.6, "u": 0.6})
+        lines = fig09.plot.families(g.result.V, g.Q, {"v": 0.6, "u": 0.6})
         fill = plot.shade(g.result.V, g.Q)
         scene = plot.scene(axes["one"], plot.camera(0.3, 0.5), g.result.V, g.Q, fill, lines)
         change(scene)
