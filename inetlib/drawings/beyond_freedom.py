@@ -68,7 +68,7 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     return found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=50 * DEGREE):
     """Six wishes at the same two angles: five are granted, the last one is not.
 

@@ -78,7 +78,7 @@ def _domed(V, dome, wave):
     return V / np.linalg.norm(np.ptp(V, axis=0))
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=48 * DEGREE):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 

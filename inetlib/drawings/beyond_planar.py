@@ -6,7 +6,7 @@ from .. import mesh, parallelogram, planar, plot, publish
 from ..plot import DEGREE
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     """A leaf filled with a net, a bent annulus, a hexagon with rings, and its middle.
 

@@ -26,7 +26,7 @@ WIDE, HIGH = 2.45, 2.3  # the window
 EQUAL = "#7b2d8b"
 
 
-@publish.drawn
+@publish.drawn()
 def draw(rho=0.95 + 1.15j):
     """The half plane with its four families and special points, and what one point rho means.
 

@@ -80,7 +80,7 @@ def table(found, theta, theta0, unit=False):
     }
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     """(A) the chords at a vertex, (B) deviations against the size, (C) the numbers, in degrees.
 

@@ -12,7 +12,7 @@ from .abcd import angle_at, beside, corners, frame, net, text_at
 SHADES = "#a9bfdd", "#f3d3c0"  # of the triangles ABD and ODC
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=70 * DEGREE, theta0=55 * DEGREE, equal=60 * DEGREE):
     """A (theta, theta0)-parallelogram, a theta-parallelogram, and its two similar triangles.
 

@@ -16,7 +16,7 @@ MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in rang
 SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as in `grid`
 
 
-@publish.drawn
+@publish.drawn()
 def draw(
     theta=RADIANS[80],
     theta0=RADIANS[50],

@@ -9,7 +9,7 @@ GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "alone", "azimuth", "elevation")
 def draw(
     theta=80 * DEGREE,
     theta0=55 * DEGREE,

@@ -14,7 +14,7 @@ LINES = {"u": "$v$ = const.", "v": "$u$ = const.", "d1": "$u+v$ = const.", "d2":
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=75 * DEGREE,
     theta0=65 * DEGREE,

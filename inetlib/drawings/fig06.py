@@ -14,7 +14,7 @@ SHAPES = {
 }
 
 
-@publish.drawn
+@publish.drawn("angle", "azimuth", "elevation")
 def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=20 * DEGREE):
     """Four isogonal nets on a sphere with their black quads, and one parallelogram of each.
 

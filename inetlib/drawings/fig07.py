@@ -22,15 +22,15 @@ TITLES = {
 }
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=60 * DEGREE,
     theta0=45 * DEGREE,
     cells=8,
-    geodesic=GEODESIC,
-    edited=EDITED,
     azimuth=-90 * DEGREE,
     elevation=20 * DEGREE,
+    geodesic=GEODESIC,
+    edited=EDITED,
 ):
     """One net in the plane, rolled up in four steps, on a cone and along a space curve.
 

@@ -7,7 +7,7 @@ from ..plot import DEGREE
 from . import isothermal
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 

@@ -33,7 +33,7 @@ TITLES = {
 }
 
 
-@publish.drawn
+@publish.drawn("t")
 def draw(around=20, t=45 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 

@@ -7,7 +7,7 @@ from ..plot import DEGREE
 from . import isothermal
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 

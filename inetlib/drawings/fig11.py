@@ -13,7 +13,7 @@ HALO = [withStroke(linewidth=2.2, foreground="white")]
 TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=75 * DEGREE,
     theta0=60 * DEGREE,

@@ -50,7 +50,7 @@ def nets(formulation="ratio", m=20, n=20, weights=patches.WEIGHTS):
     return V, Q, found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """A patch and the five isogonal nets it is optimised to, with their parallelograms.
 

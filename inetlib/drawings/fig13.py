@@ -56,7 +56,7 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
     return V, Q, polygon, found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
 
