@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.colors import to_rgb, to_rgba_array
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 
 from . import mesh, ties
 
@@ -71,6 +72,22 @@ def _added(ax, collection):
     return collection
 
 
+def text(ax, place, words, size=None, halo=0, colour="black", zorder=6, ha="center", va="center"):
+    """Words at a point of the plane, complex or (2,), in a white border of `halo` points."""
+    effects = [withStroke(linewidth=halo, foreground="white")] if halo else None
+    look = {"color": colour, "fontsize": size, "path_effects": effects, "zorder": zorder}
+    ax.text(*plane(place), words, ha=ha, va=va, **look)
+
+
+def degrees(theta: float, theta0: float | None = None) -> str:
+    """TeX for an angle (radians), or for both angles of a net with their names."""
+    one = f"{theta / DEGREE:.4g}\\degree"
+    if theta0 is None:
+        return one
+    two = degrees(theta0)
+    return rf"\theta=\theta_0={one}" if one == two else rf"\theta={one},\ \theta_0={two}"
+
+
 def net(ax, V: np.ndarray, Q: np.ndarray, families=("u", "v"), width=1.1):
     """The named families (of u, v, d1, d2) of mesh curves of a planar net, each in its colour."""
     if unknown := set(families) - set(COLOURS):
@@ -111,7 +128,7 @@ def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45):
         points, middle = camera(points)[0], camera(middle)[0]
     ax.plot(*points.T, color=colour, lw=1.0, zorder=5)
     if label:
-        ax.text(*middle, label, color=colour, ha="center", va="center", zorder=6)
+        text(ax, middle, label, colour=colour)
 
 
 def vector(ax, start, end, colour=INK, width=1.6, zorder=4):

@@ -8,7 +8,7 @@ from matplotlib.patheffects import withStroke
 
 from .. import parallelogram, plot, publish
 from ..plot import DEGREE
-from .abcd import net, text_at
+from .abcd import net
 
 COLOURS = plot.COLOURS
 ANGLES = [30, 60, 90, 120, 150]  # the arcs and rays drawn, degrees
@@ -198,14 +198,14 @@ def web(ax, rho):
     names = {"u": "$X_u$", "d2": "$Y_v$", "v": "$X_v$", "d1": "$Y_u$"}
     for z, (family, name) in zip(lines, names.items(), strict=True):
         plot.curves(ax, [[-0.35 * z, z]], COLOURS[family], 1.8)
-        text_at(ax, 1.17 * z, name, 9)
+        plot.text(ax, 1.17 * z, name, 9)
     shape = parallelogram.from_rho(rho)
     gaps = np.array(parallelogram.gaps(shape.lam, shape.mu)) / DEGREE
     ends = np.append(lines, -1)
     for a, b, gap in zip(ends[:-1], ends[1:], gaps, strict=True):
         middle = np.sqrt(a * b) * np.sign(np.sqrt(a * b).imag)
         plot.angle(ax, (0, 0), plot.plane(a), plot.plane(b), 0.42)
-        text_at(ax, (0.6 if gap > 25 else 0.82) * middle, rf"${gap:.1f}\degree$", 7)
+        plot.text(ax, (0.6 if gap > 25 else 0.82) * middle, rf"${gap:.1f}\degree$", 7)
     plot.curves(ax, [[-1 + 0j, 0]], COLOURS["u"], 0.9, ":")
     alpha, beta = (rf"{gap:.1f}\degree" for gap in gaps[[0, 3]])
     ax.text(0.05, -0.55, rf"$\alpha={alpha},\ \beta={beta}$", size=8, ha="center")
