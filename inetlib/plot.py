@@ -197,6 +197,13 @@ def cells(V, Q, white=False):
     return np.concatenate([V, board.V]), black, light
 
 
+def board(ax, view, V, Q, lines):
+    """A net in space: its inscribed parallelograms dark, the corners left light; see `scene`."""
+    points, black, light = cells(V, Q)
+    fill = [shade(points, black, DARK, depth=0.3), shade(points, light, depth=0.2)]
+    scene(ax, view, points, np.concatenate([black, light]), np.concatenate(fill), lines)
+
+
 def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     """A surface and curves on it, painted from the back to the front as vectors; the collection.
 
