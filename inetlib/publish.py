@@ -3,9 +3,7 @@
 On another machine the last digits of all these differ: what shows the same is kept.
 """
 
-import functools
 import hashlib
-import inspect
 import io
 import json
 import os
@@ -34,53 +32,10 @@ class Drawing(NamedTuple):
     claims: dict  # {name: number or text}, what the figure states
 
 
-def drawn(*degrees):
-    """A decorator: what `draw` of a figure's module returns, (figure, data, nets, claims), becomes
-    a `Drawing` of the module's name, with those arguments of the call that are numbers.
-
-    degrees: names of angles that are radians in the call, and noted in degrees.
-    """
-
-    def decorate(draw):
-        signature = inspect.signature(draw)
-
-        @functools.wraps(draw)
-        def whole(*args, **named):
-            figure, data, nets, claims = draw(*args, **named)
-            given = signature.bind(*args, **named)
-            given.apply_defaults()
-            found = {k: _noted(x, k in degrees) for k, x in given.arguments.items()}
-            found = {name: x for name, x in found.items() if x is not None}
-            name = draw.__module__.rpartition(".")[2]
-            function = f"{draw.__module__}.{draw.__name__}"
-            return Drawing(name, figure, function, found, data, nets, rounded(claims))
-
-        return whole
-
-    return decorate
-
-
-def _noted(value, in_degrees):
-    """A number or list of numbers for the manifest; None for what is none."""
-    if in_degrees:
-        angle = round(float(np.degrees(value)), 9)
-        return int(angle) if angle.is_integer() else angle
-    if isinstance(value, complex):
-        return [value.real, value.imag]
-    if isinstance(value, (tuple, list)) and not hasattr(value, "_fields"):
-        return [_noted(x, False) for x in value]
-    return value if np.isscalar(value) else None
-
-
 def deviations(nets) -> np.ndarray:
     """Largest deviations of theta and theta0 of (V, Q, theta, theta0) tuples, radians; or nan."""
     found = [measure.deviations(*net).max(axis=1) for net in nets]
     return np.max(found, axis=0) if nets else np.full(2, np.nan)
-
-
-def off(V: np.ndarray, Q: np.ndarray, angles) -> float:
-    """The larger of the `deviations` of a net from its two angles: degrees, 6 decimals."""
-    return round(float(np.degrees(deviations([(V, Q, *angles)]).max())), 6)
 
 
 def save(drawing: Drawing, folder) -> dict:

@@ -1,10 +1,7 @@
 """What counts as the same: texts, numbers, arrays, drawings and pictures, within tolerances.
 
-The last digits of computed numbers differ from one processor to the next.  What is stored,
-figures and the outputs of notebooks, is therefore replaced only when something new differs
-from it by more than that.
-
-Paper: Figs. 1-13 (files).
+The last digits of computed numbers differ from one processor to the next: what is stored is
+replaced only when something new differs from it by more than that.
 """
 
 import io
@@ -27,22 +24,16 @@ HASHED = re.compile(r'\bid="([A-Za-z_]*)(?:\d+_)*[0-9a-f]{10}(?:_\d+)*"')
 ROUNDED = re.compile(r'(\b(?:d|x|y|width|height|points)="|translate\()([^")]*)')
 
 
-def text(one, two):
+def text(one: str, two: str) -> bool:
     """Whether two texts are equal, decimals within one unit of their last digits.
 
     What a text shows is what it promises: 0.25 and 0.26 are the same, 0.25 and 0.27 are not,
     and nor are 7 and 8: whole numbers count as words.
     """
-    if one == two:
-        return True
-    (words, numbers), (others, found) = (_parts(t, NUMBER) for t in (one, two))
-    pairs = zip(numbers, found, strict=False)
-    return words == others and all(a == b or _near(a, b) for a, b in pairs)
-
-
-def _parts(text, pattern):
-    """The text between the matches of a pattern, and the matches."""
-    return pattern.split(text), pattern.findall(text)
+    if NUMBER.split(one) != NUMBER.split(two):
+        return False
+    pairs = zip(NUMBER.findall(one), NUMBER.findall(two), strict=True)
+    return all(a == b or _near(a, b) for a, b in pairs)
 
 
 def _near(a, b):
@@ -52,7 +43,7 @@ def _near(a, b):
     return abs(a - b) <= Decimal(10) ** max(x.as_tuple().exponent for x in (a, b))
 
 
-def claims(one, two):
+def claims(one, two) -> bool:
     """Whether two claims of a figure, numbers, words, lists or dicts of them, are the same.
 
     Decimals are so within one unit of the last digit that either of them states.
@@ -68,7 +59,7 @@ def claims(one, two):
     return type(one) is type(two) and one == two
 
 
-def data(one, two):
+def data(one: dict, two: dict) -> list:
     """The names of the arrays that differ, or are in one of two dicts of real arrays only."""
     size = max((float(np.ptp(x)) for x in one.values() if np.size(x)), default=0.0)
     differ = sorted(one.keys() ^ two.keys())
@@ -79,18 +70,15 @@ def data(one, two):
     return differ
 
 
-def plain_svg(svg):
+def plain_svg(svg: str) -> str:
     """The text of an SVG by matplotlib with names in order of appearance and two decimals.
 
     matplotlib names clips and markers by a hash of numbers with all their digits.
     """
     names = {}
     for match in HASHED.finditer(svg):
-        full = match[0][len('id="') : -1]
-        names.setdefault(full, f"{match[1]}-{len(names) + 1}")
-    pattern = "|".join(sorted(map(re.escape, names), key=len, reverse=True))
-    if names:
-        svg = re.sub(rf'(?<=["#])(?:{pattern})(?=[")])', lambda match: names[match[0]], svg)
+        names.setdefault(match[0][len('id="') : -1], f"{match[1]}-{len(names) + 1}")
+    svg = re.sub(r'(?<=["#])[\w-]+(?=[")])', lambda match: names.get(match[0], match[0]), svg)
     return ROUNDED.sub(lambda match: match[1] + COORDINATE.sub(_short, match[2]), svg)
 
 
@@ -99,33 +87,31 @@ def _short(match):
     return "0" if digits == "-0" else digits
 
 
-def svg(one, two):
+def svg(one: str, two: str) -> bool:
     """Whether two texts of `plain_svg` show the same: coordinates and colours within tolerance."""
     if one == two:
         return True
-    (words, colours), (others, found) = (_parts(t, COLOUR) for t in (one, two))
-    if len(words) != len(others):
+    colours = [[list(bytes.fromhex(x[1:])) for x in COLOUR.findall(s)] for s in (one, two)]
+    plain = [COLOUR.sub("#", s) for s in (one, two)]
+    if COORDINATE.split(plain[0]) != COORDINATE.split(plain[1]):
         return False
-    levels = (np.array([list(bytes.fromhex(c[1:])) for c in x]) for x in (colours, found))
-    if colours != found and np.abs(np.subtract(*levels)).max() > LEVELS:
-        return False
-    (words, numbers), (others, found) = (_parts("#".join(t), COORDINATE) for t in (words, others))
-    if words != others:
-        return False
-    return bool(np.abs(np.array(numbers, float) - np.array(found, float)).max() <= POINT)
+    numbers = [np.array(COORDINATE.findall(s), float) for s in plain]
+    return _within(colours, LEVELS) and _within(numbers, POINT)
 
 
-def picture(one, two, levels=LEVELS, mean=MEAN):
-    """Whether two PNG files, as bytes, look the same.
+def _within(pair, most):
+    return bool(np.abs(np.subtract(*pair)).max(initial=0) <= most)
+
+
+def picture(one: bytes, two: bytes, levels: float = LEVELS, mean: float = MEAN) -> bool:
+    """Whether two PNG files look the same.
 
     levels: by which one pixel may differ, of 255; mean: of all pixels, as a part of 1.
     """
     if one == two:
         return True
-    one, two = (
-        np.asarray(PIL.Image.open(io.BytesIO(x)).convert("RGBA"), float) for x in (one, two)
-    )
-    if one.shape != two.shape:
+    pair = [PIL.Image.open(io.BytesIO(x)).convert("RGBA") for x in (one, two)]
+    if pair[0].size != pair[1].size:
         return False
-    apart = np.abs(one - two)
+    apart = np.abs(np.subtract(*(np.asarray(x, float) for x in pair)))
     return bool(apart.max() <= levels and apart.mean() <= 255 * mean)

@@ -1,0 +1,52 @@
+"""figNN.draw draws Fig. NN, the other modules what the paper does not have."""
+
+import functools
+import inspect
+
+import numpy as np
+
+from .. import publish
+
+
+def drawn(*degrees):
+    """A decorator for `draw` of a module: what it returns, (figure, data, nets, claims), as a
+    `publish.Drawing` of the module's name, with those arguments of the call that are numbers.
+
+    degrees: names of angles that are radians in the call, and noted in degrees.
+    """
+
+    def decorate(draw):
+        signature, module = inspect.signature(draw), draw.__module__
+
+        @functools.wraps(draw)
+        def whole(*args, **named):
+            figure, data, nets, claims = draw(*args, **named)
+            given = signature.bind(*args, **named)
+            given.apply_defaults()
+            noted = {name: _noted(x, name in degrees) for name, x in given.arguments.items()}
+            noted = {name: x for name, x in noted.items() if x is not None}
+            name, function = module.rpartition(".")[2], f"{module}.{draw.__name__}"
+            return publish.Drawing(
+                name, figure, function, noted, data, nets, publish.rounded(claims)
+            )
+
+        return whole
+
+    return decorate
+
+
+def _noted(value, in_degrees=False):
+    """A number or list of numbers for the manifest; None for what is none."""
+    if in_degrees:
+        angle = round(float(np.degrees(value)), 9)
+        return int(angle) if angle.is_integer() else angle
+    if isinstance(value, complex):
+        return [value.real, value.imag]
+    if isinstance(value, (tuple, list, np.ndarray)) and not hasattr(value, "_fields"):
+        return [_noted(x) for x in value]
+    return value if np.isscalar(value) else None
+
+
+def worst(V, Q, angles):
+    """The larger deviation of a net from its two angles, over all faces: degrees, 6 decimals."""
+    return round(float(np.degrees(publish.deviations([(V, Q, *angles)]).max())), 6)

@@ -3,10 +3,10 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import mesh, plot, publish, reference, solver, surfaces, ties
+from .. import mesh, plot, reference, solver, surfaces, ties
 from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import patches
+from . import drawn, patches
 
 CELLS = 12
 TITLES = {
@@ -64,7 +64,7 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     return found
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=50 * DEGREE):
     """Six wishes at the same two angles: five are granted, the last one is not.
 

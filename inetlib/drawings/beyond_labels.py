@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .. import examples, mesh, plot, publish, reference, solver
+from .. import examples, mesh, plot, reference, solver
 from ..plot import DEGREE
-from . import patches
+from . import drawn, patches
 from .revolution import SLOTS
 
 FACE = "#7b2d8b"  # the singular face
@@ -65,7 +65,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
     return found
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=48 * DEGREE):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 

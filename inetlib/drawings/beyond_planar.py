@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from .. import mesh, parallelogram, planar, plot, publish
+from .. import mesh, parallelogram, planar, plot
 from ..plot import DEGREE
+from . import drawn
 
 
-@publish.drawn()
+@drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     """A leaf filled with a net, a bent annulus, a hexagon with rings, and its middle.
 

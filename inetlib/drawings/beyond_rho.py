@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from .. import parallelogram, plot, publish
+from .. import parallelogram, plot
 from ..plot import COLOURS, DEGREE
+from . import drawn
 from .abcd import net
 
 ANGLES = [30, 60, 90, 120, 150]  # the arcs and rays drawn, degrees
@@ -21,7 +22,7 @@ WIDE, HIGH = 2.45, 2.3  # the window
 EQUAL = "#7b2d8b"
 
 
-@publish.drawn()
+@drawn()
 def draw(rho=0.95 + 1.15j):
     """The half plane with its four families and special points, and what one point rho means.
 

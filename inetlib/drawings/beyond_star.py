@@ -3,8 +3,9 @@
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from .. import conformal, loxodrome, measure, mesh, plot, publish, reference, solver, surfaces
+from .. import conformal, loxodrome, measure, mesh, plot, reference, solver, surfaces
 from ..plot import DEGREE
+from . import drawn
 
 SIZES = 8, 16, 32, 64
 LABELS = ["$z^2$", r"$\exp$", "$1/z$", "sphere, loxodromes", "roof, optimised"]
@@ -71,7 +72,7 @@ def table(found, theta, theta0, unit=False):
     return rows
 
 
-@publish.drawn()
+@drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     """(A) the chords at a vertex, (B) deviations against the size, (C) the numbers, in degrees.
 

@@ -2,14 +2,15 @@
 
 import numpy as np
 
-from .. import parallelogram, plot, publish
+from .. import parallelogram, plot
 from ..plot import DEGREE
+from . import drawn
 from .abcd import angle_at, beside, corners, frame, net
 
 SHADES = "#a9bfdd", "#f3d3c0"  # of the triangles ABD and ODC
 
 
-@publish.drawn()
+@drawn()
 def draw(theta=70 * DEGREE, theta0=55 * DEGREE, equal=60 * DEGREE):
     """A (theta, theta0)-parallelogram, a theta-parallelogram, and its two similar triangles.
 

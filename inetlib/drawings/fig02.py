@@ -2,15 +2,16 @@
 
 import numpy as np
 
-from .. import parallelogram, plot, publish
+from .. import parallelogram, plot
 from ..plot import DEGREE
+from . import drawn
 from .abcd import angle_at, beside, corners, frame, net
 
 RATIOS = r"\lambda,\,\mu", r"1/\lambda,\,\mu", r"\lambda,\,1/\mu", r"1/\lambda,\,1/\mu"
 SURDS = {60: r"(1+\sqrt{5})/2", 45: r"(\sqrt{2}+\sqrt{6})/2", 30: r"(\sqrt{3}+\sqrt{7})/2"}
 
 
-@publish.drawn()
+@drawn()
 def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE, 30 * DEGREE)):
     """Four parallelograms (A-D) with reciprocal ratios, and three theta-parallelograms (E-G).
 

@@ -7,6 +7,7 @@ from matplotlib.patheffects import withStroke
 
 from .. import conformal, parallelogram, plot, publish
 from ..plot import DEGREE
+from . import drawn
 
 ROWS = [["A", "B", "C"], ["A'", "B'", "C'"], ["C_1", "C_2", "C_3"]]
 MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in range(height)]
@@ -14,7 +15,7 @@ SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as i
 A, B, C = (80 * DEGREE, 50 * DEGREE), 45 * DEGREE, 60 * DEGREE  # the angles of the grids
 
 
-@publish.drawn()
+@drawn()
 def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
     """Three sheared grids, their conformal images with exact curves, and three patterns.
 

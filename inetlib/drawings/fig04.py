@@ -2,15 +2,16 @@
 
 import numpy as np
 
-from .. import measure, parallelogram, plot, publish
+from .. import measure, parallelogram, plot
 from ..plot import COLOURS, DEGREE, INK
+from . import drawn
 
 GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
 LEFT, SIXTY, VIEW = (80 * DEGREE, 55 * DEGREE), 60 * DEGREE, (-100 * DEGREE, 58 * DEGREE)
 
 
-@publish.drawn("theta", "theta0", "alone", "azimuth", "elevation")
+@drawn("theta", "theta0", "alone", "azimuth", "elevation")
 def draw(theta=LEFT[0], theta0=LEFT[1], alone=SIXTY, azimuth=VIEW[0], elevation=VIEW[1]):
     """Two quads in space, seen from outside, each with its inscribed parallelogram.
 

@@ -3,8 +3,9 @@
 import numpy as np
 from matplotlib.colors import to_rgb
 
-from .. import conformal, measure, mesh, parallelogram, plot, publish
+from .. import conformal, measure, mesh, parallelogram, plot
 from ..plot import COLOURS, DEGREE
+from . import drawn, worst
 
 STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
 SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
@@ -19,7 +20,7 @@ TITLES = {
 }
 
 
-@publish.drawn("theta", "theta0", "azimuth", "elevation")
+@drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=75 * DEGREE,
     theta0=65 * DEGREE,
@@ -55,8 +56,8 @@ def draw(
         plot.panel(ax, name, TITLES[name])
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
     claims = {
-        "sampled_net_max_deviation_deg": publish.off(*net, asked),
-        "sampled_net_half_size_max_deviation_deg": publish.off(*finer, asked),
+        "sampled_net_max_deviation_deg": worst(*net, asked),
+        "sampled_net_half_size_max_deviation_deg": worst(*finer, asked),
     }
     return figure, {"domain": domain[0], "mesh": net[0]}, [(*domain, *asked)], claims
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from .. import conformal, developable, plot, publish
+from .. import conformal, developable, plot
 from ..plot import DEGREE
+from . import drawn, worst
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
 PANELS = [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
@@ -15,7 +16,7 @@ TITLES = {"A": "$k=0$: sheared grid in the plane", "B": "$k=1/4$", "C": "$k=1/2$
 TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "Bezier geodesic", "H": "moved points"}
 
 
-@publish.drawn("theta", "theta0", "azimuth", "elevation")
+@drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=60 * DEGREE,
     theta0=45 * DEGREE,
@@ -45,7 +46,7 @@ def draw(
     data, claims = {"domain": domain}, {}
     for name, bend in maps.items():
         V = data[f"net_{name}"] = bend(z).reshape(-1, 3)
-        claims[f"chords_{name}_max_deviation_deg"] = publish.off(V, Q, (theta, theta0))
+        claims[f"chords_{name}_max_deviation_deg"] = worst(V, Q, (theta, theta0))
         claims[f"stretch_{name}"] = _stretch(bend, z)
         _sheet(axes[name], view, bend, z)
         plot.panel(axes[name], name, TITLES[name])

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from .. import conformal, parallelogram, plot, publish, surfaces
+from .. import conformal, parallelogram, plot, surfaces
 from ..plot import DEGREE
-from . import isothermal
+from . import drawn, isothermal, worst
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 
@@ -31,7 +31,7 @@ def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     lam, mu = parallelogram.ratios(*isothermal.ANGLES)
     theta, theta0 = np.degrees(isothermal.ANGLES)
     claims = {"lam_squared": lam**2, "mu_squared": mu**2, "theta_deg": theta, "theta0_deg": theta0}
-    claims["sampled_net_max_deviation_deg"] = publish.off(V, Q, isothermal.ANGLES)
+    claims["sampled_net_max_deviation_deg"] = worst(V, Q, isothermal.ANGLES)
     domain, _ = conformal.quads(z)
     return figure, {"net": V, "domain": domain}, [(domain, Q, *isothermal.ANGLES)], claims
 

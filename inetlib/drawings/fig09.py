@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import conformal, measure, mesh, moebius, plot, publish, reference, solver, surfaces
+from .. import conformal, measure, mesh, moebius, plot, reference, solver, surfaces
 from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import isothermal
+from . import drawn, isothermal, worst
 from .lighter import lighter
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
@@ -26,7 +26,7 @@ MARGIN = 1.0  # the surface goes on beyond the start by this much of u and v
 WEIGHTS = Weights(fairness=0.001, closeness=0.01)  # faces of very different sizes stay so
 
 
-@publish.drawn("t")
+@drawn("t")
 def draw(around=20, t=45 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 
@@ -48,7 +48,7 @@ def draw(around=20, t=45 * DEGREE):
         if panel[1] == "1":
             nets.append((*conformal.quads(z), *isothermal.ANGLES))
         data[f"net_{panel}"] = V
-        off = publish.off(V, Q, isothermal.ANGLES)
+        off = worst(V, Q, isothermal.ANGLES)
         claims[f"sampled_net_{panel}_max_deviation_deg"] = off
     glides = optimised(around, t)
     for panel, g in glides.items():

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from .. import conformal, moebius, plot, publish, surfaces
+from .. import conformal, moebius, plot, surfaces
 from ..plot import DEGREE
-from . import isothermal
+from . import drawn, isothermal, worst
 
 CIRCLE = np.exp(2j * np.pi * np.arange(181) / 180)
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 
@@ -31,7 +31,7 @@ def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
     data, claims = {"sphere": V, "plane": W}, {}
     for name, points in data.items():
-        off = publish.off(points, Q, isothermal.ANGLES)
+        off = worst(points, Q, isothermal.ANGLES)
         claims[f"sampled_net_{name}_max_deviation_deg"] = off
     return figure, data, [(*conformal.quads(z), *isothermal.ANGLES)], claims
 

@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from .. import loxodrome, measure, parallelogram, plot, publish, surfaces
+from .. import loxodrome, measure, parallelogram, plot, surfaces
 from ..plot import COLOURS, DEGREE
-from . import revolution
+from . import drawn, revolution
 
 STRIP, HALO = "#9db9de", 2.2
 TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
 ANGLES, VIEW = (75 * DEGREE, 60 * DEGREE), (54 * DEGREE, 24 * DEGREE)
 
 
-@publish.drawn("theta", "theta0", "azimuth", "elevation")
+@drawn("theta", "theta0", "azimuth", "elevation")
 def draw(theta=ANGLES[0], theta0=ANGLES[1], m=18, profile=None, azimuth=VIEW[0], elevation=VIEW[1]):
     """A strip between two loxodromes, the exact DI-net of all strips, and its 4-web.
 

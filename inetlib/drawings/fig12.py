@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import plot, publish, reference, solver, surfaces, ties
+from .. import plot, reference, solver, surfaces, ties
 from ..plot import DEGREE
-from . import patches
+from . import drawn, patches
 
 RIGHT, SIXTY = 90 * DEGREE, 60 * DEGREE
 SETTINGS = {"A": {}, "B": {"theta": RIGHT}, "C": {"theta0": RIGHT}}  # what is not given is found
@@ -37,7 +37,7 @@ def nets(formulation="ratio", m=20, n=20, weights=patches.WEIGHTS):
     return V, Q, found
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """A patch and the five isogonal nets it is optimised to, with their parallelograms.
 

@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import mesh, moebius, plot, publish, reference, solver, ties
+from .. import mesh, moebius, plot, reference, solver, ties
 from ..plot import DEGREE
-from . import patches
+from . import drawn, patches
 
 SIXTY = 60 * DEGREE
 SETTINGS = {"A": {"theta": SIXTY, "theta0": SIXTY}, "B": {"theta": SIXTY, "theta0": 45 * DEGREE}}
@@ -46,7 +46,7 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
     return V, Q, polygon, found
 
 
-@publish.drawn("azimuth", "elevation")
+@drawn("azimuth", "elevation")
 def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
 
