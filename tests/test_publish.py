@@ -7,32 +7,26 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from inetlib import conformal, plot, publish
+from inetlib import conformal, drawings, plot, publish, surfaces
 
 T, T0 = np.radians(60), np.radians(45)
 
 
 @pytest.fixture
 def draw():
-    """Makes drawings of a net; closes their figures at the end."""
+    """Makes drawings of a net, with some parts changed; closes their figures at the end."""
     figures = []
 
-    def make(name="fig00", theta=T, claims=None, parameters=None, nets=None, data=None, title=""):
+    def make(name="fig00", theta=T, title="a net", **changed):
         figure, axes = plot.canvas([["A", "B"]], 3, 1.5)
         figures.append(figure)
         V, Q = conformal.quads(conformal.sheared_grid(theta, T0, 3, 3))
         plot.net(axes["A"], V, Q)
         plot.black_quads(axes["B"], V, Q)
-        plot.panel(axes["A"], "A", title or "a net")
-        return publish.Drawing(
-            name=name,
-            figure=figure,
-            function="inetlib.drawings.fig00.draw",
-            parameters={"theta": round(theta, 9)} if parameters is None else parameters,
-            data={"V": V, "Q": Q} if data is None else data,
-            nets=[(V, Q, theta, T0)] if nets is None else nets,
-            claims={"faces": 9} if claims is None else claims,
-        )
+        plot.panel(axes["A"], "A", title)
+        parts = {"parameters": {"theta": round(theta, 9)}, "data": {"V": V, "Q": Q}}
+        parts |= {"nets": [(V, Q, theta, T0)], "claims": {"faces": 9}} | changed
+        return publish.Drawing(name, figure, "inetlib.drawings.fig00.draw", **parts)
 
     yield make
     for figure in figures:
@@ -48,45 +42,37 @@ def contents(folder):
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
 
 
-# --- deviations ---------------------------------------------------------------------------
-
-
 def test_deviations_are_the_largest_of_all_faces_of_all_nets():
     V, Q = conformal.quads(np.add.outer(np.arange(3), 1j * np.arange(2)))  # squares: 90 degrees
-    nets = [
-        (V, Q, np.radians(90), np.radians(91)),
-        (V, Q, np.radians(87), np.radians(90.5)),
-    ]
+    nets = [(V, Q, *np.radians([90, 91])), (V, Q, *np.radians([87, 90.5]))]
     assert publish.deviations(nets) == pytest.approx(np.radians([3, 1]))
     V[0, 0] += 1  # one diagonal (1, 1) becomes (0, 1): its angle with (1, -1) is 135 degrees
     assert publish.deviations([(V, Q, np.pi / 2, np.pi / 2)])[0] == pytest.approx(np.pi / 4)
-
-
-def test_without_nets_there_is_no_deviation():
     assert np.isnan(publish.deviations([])).all()
 
 
-# --- saving -------------------------------------------------------------------------------
+def test_a_drawing_has_the_name_of_its_module_and_the_arguments_of_the_call():
+    @drawings.drawn("angle")
+    def draw(angle=np.pi / 4, count=3, places=((0, 0.5), (1, 2)), rho=1 + 2j, profile=None):
+        return "figure", {"x": angle}, [], {"half": np.float64(1 / 3)}
+
+    drawing = draw(np.radians(60.5), profile=surfaces.vase_profile())
+    assert (drawing.name, drawing.function) == ("test_publish", f"{__name__}.draw")
+    parameters = {"angle": 60.5, "count": 3, "places": [[0, 0.5], [1, 2]], "rho": [1, 2]}
+    assert drawing.parameters == parameters and draw().parameters["angle"] == 45
+    assert drawing.claims == {"half": 0.333333333} and drawing.data == {"x": np.radians(60.5)}
 
 
-def test_saving_twice_gives_the_same_bytes(draw, tmp_path):
+def test_saving_twice_gives_the_same_bytes_without_dates(draw, tmp_path):
     drawing = draw()
-    publish.save(drawing, tmp_path)
+    for _ in range(2):
+        publish.save(drawing, tmp_path)
     first = contents(tmp_path)
     assert set(first) == FILES
-    publish.save(drawing, tmp_path)
-    assert contents(tmp_path) == first
     publish.save(draw(), tmp_path)
     assert contents(tmp_path) == first
-
-
-def test_the_files_are_an_svg_and_a_png_without_dates(draw, tmp_path):
-    publish.save(draw(), tmp_path)
-    found = contents(tmp_path)
-    assert found["fig00.png"].startswith(b"\x89PNG")
-    assert b"<svg" in found["fig00.svg"]
-    assert b"<dc:date>" not in found["fig00.svg"]
-    assert b"Matplotlib" not in found["fig00.png"]
+    assert first["fig00.png"].startswith(b"\x89PNG") and b"<svg" in first["fig00.svg"]
+    assert b"<dc:date>" not in first["fig00.svg"] and b"Matplotlib" not in first["fig00.png"]
 
 
 def test_the_manifest_holds_what_stands_behind_the_figure(draw, tmp_path):
@@ -109,16 +95,10 @@ def test_the_manifest_holds_what_stands_behind_the_figure(draw, tmp_path):
 
 def test_a_wrong_claim_about_the_angles_shows_in_the_manifest(draw, tmp_path):
     V, Q = conformal.quads(conformal.sheared_grid(T, T0, 2, 2))
-    nets = [(V, Q, T + np.radians(0.5), T0)]
-    entry = publish.save(draw(nets=nets), tmp_path)
+    entry = publish.save(draw(nets=[(V, Q, T + np.radians(0.5), T0)]), tmp_path)
     assert entry["max_deviation_theta_deg"] == pytest.approx(0.5, abs=1e-8)
     assert entry["max_deviation_theta0_deg"] == 0
-
-
-def test_a_figure_without_nets_has_no_deviation_in_the_manifest(draw, tmp_path):
-    entry = publish.save(draw(nets=[]), tmp_path)
-    assert entry["max_deviation_theta_deg"] is None
-    assert b"NaN" not in (tmp_path / "manifest.json").read_bytes()
+    assert publish.save(draw(nets=[]), tmp_path)["max_deviation_theta_deg"] is None
 
 
 def test_the_data_are_there_to_be_read(draw, tmp_path):
@@ -133,22 +113,13 @@ def test_the_data_are_there_to_be_read(draw, tmp_path):
     assert not np.signbit(found["o"]).any()
 
 
-# --- keeping ------------------------------------------------------------------------------
-
-
-def shaken(drawing, size):
-    rng = np.random.default_rng(3)
-    data = {k: x * (1 + size * rng.uniform(-1, 1, x.shape)) for k, x in drawing.data.items()}
-    return drawing._replace(data=data)
-
-
 def test_what_differs_by_the_last_digits_is_kept(draw, tmp_path):
-    claims = {"x": 0.123456, "whole": 60.0}
-    first = publish.save(draw(claims=claims), tmp_path)
-    before = contents(tmp_path)
-    claims = {"x": 0.123457, "whole": 59.999999}
-    other = shaken(draw(theta=T + 1e-13, parameters={"theta": T + 1e-13}, claims=claims), 1e-8)
-    assert publish.save(other, tmp_path) == first
+    first = publish.save(draw(claims={"x": 0.123456, "whole": 60.0}), tmp_path)
+    before, rng = contents(tmp_path), np.random.default_rng(3)
+    changed = {"parameters": {"theta": T + 1e-13}, "claims": {"x": 0.123457, "whole": 59.999999}}
+    other = draw(theta=T + 1e-13, **changed)
+    data = {k: x * (1 + 1e-8 * rng.uniform(-1, 1, x.shape)) for k, x in other.data.items()}
+    assert publish.save(other._replace(data=data), tmp_path) == first
     assert contents(tmp_path) == before
 
 
@@ -223,9 +194,6 @@ def test_the_users_settings_change_no_byte(draw, tmp_path):
     assert contents(tmp_path / "one") == contents(tmp_path / "two")
 
 
-# --- the manifest -------------------------------------------------------------------------
-
-
 def test_the_manifest_keeps_other_figures_and_is_sorted(draw, tmp_path):
     for name in ("fig02", "fig01", "fig03"):
         publish.save(draw(name), tmp_path)
@@ -238,14 +206,11 @@ def test_the_manifest_keeps_other_figures_and_is_sorted(draw, tmp_path):
 
 def test_a_folder_with_spaces_is_made_when_only_its_last_part_is_missing(draw, tmp_path):
     folder = tmp_path / "my figures (new)"
+    assert publish.read_manifest(folder) == {}
     publish.save(draw(), str(folder))
     assert set(contents(folder)) == FILES
-
-
-def test_a_missing_parent_folder_is_named(draw, tmp_path):
     with pytest.raises(FileNotFoundError, match="nowhere"):
         publish.save(draw(), tmp_path / "nowhere" / "figures")
-    assert contents(tmp_path) == {}
 
 
 @pytest.mark.parametrize("kind", ["svg", "png"])
@@ -295,7 +260,3 @@ def test_nothing_is_written_when_the_entry_cannot_be(draw, tmp_path, what):
     with pytest.raises(error, match=words):
         publish.save(draw(**change), tmp_path)
     assert contents(tmp_path) == {}
-
-
-def test_there_is_no_manifest_yet_in_an_empty_folder(tmp_path):
-    assert publish.read_manifest(tmp_path) == {}
