@@ -30,9 +30,6 @@ def many(count=500, seed=5):
     return rng.normal(0, 1.5, count) + 1j * np.exp(rng.normal(0, 1, count))
 
 
-# --- the harmonic pencil ------------------------------------------------------------------
-
-
 def test_the_cross_ratio_of_the_web_is_minus_one_for_every_rho():
     x, y = sp.Symbol("x", real=True), sp.Symbol("y", positive=True)
     xu, yv, xv, yu = parallelogram.directions(x + sp.I * y)
@@ -49,8 +46,7 @@ def test_the_cross_ratio_knows_neither_lengths_nor_signs_but_the_order():
     a, b, c, d = lines
     assert parallelogram.cross_ratio(a, b, d, c) == pytest.approx(1 / ratio)
     assert parallelogram.cross_ratio(a, c, b, d) == pytest.approx(1 - ratio)
-    slopes = [z.imag / z.real for z in lines]
-    p, q, r, s = slopes
+    p, q, r, s = (z.imag / z.real for z in lines)
     assert ratio == pytest.approx((r - p) * (s - q) / ((s - p) * (r - q)))
     with pytest.raises(ValueError, match="coincide"):
         parallelogram.cross_ratio(a, b, c, -2 * a)
@@ -73,21 +69,15 @@ def test_cotangents_of_the_half_angles():
     _, theta0 = parallelogram.angles(lam, mu)
     cot = [sp.cos(x) / sp.sin(x) for x in (alpha, beta)]
     wanted = [(mu + s * sp.cos(theta0)) / sp.sin(theta0) for s in (1, -1)]
-    for one, other in zip(cot, wanted, strict=True):
-        assert sp.simplify(sp.factor(one - other, deep=True)) == 0
+    off = [one - other for one, other in zip(cot, wanted, strict=True)]
+    assert all(sp.simplify(sp.factor(x, deep=True)) == 0 for x in off)
 
 
-def test_four_shapes_contain_the_regular_three_web():
-    for theta, theta0 in ((90, 60), (90, 120), (60, 90), (120, 90)):
-        gaps = np.degrees(
-            parallelogram.gaps(*parallelogram.ratios(theta * DEGREE, theta0 * DEGREE))
-        )
-        assert sorted(gaps) == pytest.approx([30, 30, 60, 60])
-    gaps = np.degrees(parallelogram.gaps(1.0, 1.0))
-    assert gaps == pytest.approx([45] * 4)
-
-
-# --- the half plane -----------------------------------------------------------------------
+@pytest.mark.parametrize("pair", [(90, 60), (90, 120), (60, 90), (120, 90)])
+def test_four_shapes_contain_the_regular_three_web(pair):
+    gaps = parallelogram.gaps(*parallelogram.ratios(*np.radians(pair)))
+    assert sorted(np.degrees(gaps)) == pytest.approx([30, 30, 60, 60])
+    assert np.degrees(parallelogram.gaps(1.0, 1.0)) == pytest.approx([45] * 4)
 
 
 def test_every_point_lies_on_its_four_curves():
@@ -122,22 +112,20 @@ def test_equal_angles_lie_on_one_circle_and_nowhere_else():
     for degrees in (20, 60, 135):
         lam, mu = parallelogram.ratios(degrees * DEGREE, degrees * DEGREE)
         assert abs(parallelogram.rho(lam, mu) - centre) == pytest.approx(radius)
-
-
-def test_lam_one_is_a_line():
     with pytest.raises(ValueError, match="imaginary axis"):
         parallelogram.lam_circle(1)
 
 
-# --- labels -------------------------------------------------------------------------------
+def right_way_up(V, Q):
+    V, Q = mesh.check(V, Q)
+    d1, d2, _, _ = measure.vectors(V, Q)
+    return (np.cross(d1, d2)[:, 2] > 0).all()
 
 
 @pytest.mark.parametrize("valence", range(3, 9))
 def test_vertices_of_even_valence_can_be_labelled(valence):
     V, Q = examples.vertex(valence, 3)
-    V, Q = mesh.check(V, Q)
-    d1, d2, _, _ = measure.vectors(V, Q)
-    assert (np.cross(d1, d2)[:, 2] > 0).all() and np.sum(Q == 0) == valence
+    assert right_way_up(V, Q) and np.sum(Q == 0) == valence
     assert len(Q) == 9 * valence and len(np.unique(Q)) == len(V)
     if valence % 2:
         with pytest.raises(ValueError, match=f"vertex 0 has the odd valence {valence}"):
@@ -149,9 +137,7 @@ def test_vertices_of_even_valence_can_be_labelled(valence):
 @pytest.mark.parametrize("sides", [3, 4, 5, 8])
 def test_polar_caps_are_labelled_for_any_number_of_sides(sides):
     V, Q, polygon = examples.polar_cap(sides, 4)
-    V, Q = mesh.check(V, Q)
-    d1, d2, _, _ = measure.vectors(V, Q)
-    assert (np.cross(d1, d2)[:, 2] > 0).all() and mesh.is_labelled(Q)
+    assert right_way_up(V, Q) and mesh.is_labelled(Q)
     assert len(Q) == 4 * sides and len(polygon) == sides
     assert sorted(np.bincount(Q.ravel())[polygon]) == [2] * sides  # and the polygon: valence 3
     loops = [sorted(loop.tolist()) for loop in mesh.boundary_loops(Q)]
@@ -164,14 +150,6 @@ def test_the_moebius_strip_has_no_orientation():
         mesh.label(Q)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     assert edges.max() < 0.7  # the seam is closed
-
-
-def test_a_mirrored_face_has_the_inverse_of_one_ratio():
-    V = np.array([[0.1, 1, 0], [0, 0, 0.2], [1.2, 0.1, 0], [1, 1.3, 0.4]])
-    (lam,), (mu,) = measure.ratios(V, np.array([[0, 1, 2, 3]]))
-    assert np.allclose(measure.ratios(V, np.array([[0, 3, 2, 1]])), [[lam], [1 / mu]])
-    assert np.allclose(measure.ratios(V, np.array([[3, 2, 1, 0]])), [[1 / lam], [mu]])
-    assert np.allclose(measure.ratios(V, np.array([[1, 2, 3, 0]])), [[1 / lam], [1 / mu]])
 
 
 def test_the_names_disagree_somewhere_exactly_on_refused_meshes():
@@ -187,16 +165,11 @@ def test_the_names_disagree_somewhere_exactly_on_refused_meshes():
     assert len(edges) == 0 and mesh.is_labelled(labelled)
 
 
-@pytest.mark.parametrize(
-    "build", [examples.vertex, examples.polar_cap, lambda a, b: examples.moebius_strip(a, b)]
-)
-def test_counts_out_of_range_are_refused(build):
-    for bad in ((2, 3), (6, 0), (5.5, 2)):
-        with pytest.raises(ValueError, match="whole number"):
-            build(*bad)
-
-
-# --- degrees of freedom -------------------------------------------------------------------
+@pytest.mark.parametrize("build", [examples.vertex, examples.polar_cap, examples.moebius_strip])
+@pytest.mark.parametrize("bad", [(2, 3), (6, 0), (5.5, 2)])
+def test_counts_out_of_range_are_refused(build, bad):
+    with pytest.raises(ValueError, match="whole number"):
+        build(*bad)
 
 
 def test_the_jacobian_is_the_derivative():
@@ -238,18 +211,13 @@ def test_ring_meshes_webs_and_tori_have_full_rank():
 
 
 def test_a_fixed_boundary_costs_rank_where_the_net_is_flat():
-    m = 6
-    rim = mesh.boundary_loops(mesh.grid_quads(m, m))[0]
-    V, Q = conformal.quads(conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, m, m))
+    rim = mesh.boundary_loops(mesh.grid_quads(6, 6))[0]
+    V, Q = conformal.quads(conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, 6, 6))
     flat = freedom.count(V, Q, rim)
     assert (flat.unknowns, flat.rank, flat.free) == (3 * 25, 2 * 25, 25)
-    mask = np.isin(np.arange(len(V)), rim)
-    assert freedom.count(V, Q, mask) == flat
-    roof = freedom.count(*surfaces.freeform_patch(m, m), rim)
+    assert freedom.count(V, Q, np.isin(np.arange(len(V)), rim)) == flat
+    roof = freedom.count(*surfaces.freeform_patch(6, 6), rim)
     assert (roof.rank, roof.free) == (72, 3)
-
-
-def test_large_meshes_are_refused():
     with pytest.raises(ValueError, match="1225 faces: at most 1200"):
         freedom.count(*surfaces.freeform_patch(35, 35))
 
@@ -297,9 +265,6 @@ def test_half_turns_keep_any_angles_and_mirrors_only_right_ones():
     assert asymmetry(60, 60) > 0.1
 
 
-# --- angles at vertices -------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("unit", [False, True])
 def test_star_angles_of_an_affine_grid_are_those_of_its_faces(unit):
     z = conformal.sheared_grid(70 * DEGREE, 40 * DEGREE, 4, 3, direction=0.3 + 1j)
@@ -343,7 +308,7 @@ def test_star_angles_leave_out_the_rim_and_singular_vertices():
     rim = mesh.boundary_loops(Q)[0]
     assert len(star.vertex) == len(V) - len(rim) - 1 and 0 not in star.vertex
     one = measure.star_angles(*conformal.quads(np.array([[0, 1j], [1, 1 + 1j]])))
-    assert one.vertex.size == one.theta.size == one.theta0.size == 0
+    assert [x.size for x in one] == [0, 0, 0]
 
 
 def test_star_angles_come_with_the_square_of_the_size():
@@ -356,16 +321,11 @@ def test_star_angles_come_with_the_square_of_the_size():
     assert beyond_star.table(found, 60 * DEGREE, 45 * DEGREE)["z2"].max() < 1e-10
 
 
-# --- drawings -----------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("module", [beyond_rho, beyond_labels, beyond_freedom, beyond_star])
 def test_drawings_show_exact_nets(module):
     drawing = module.draw()
     plt.close(drawing.figure)
-    assert drawing.function == f"{module.__name__}.draw"
-    assert drawing.name == module.__name__.rpartition(".")[2]
-    assert drawing.nets and max(publish.deviations(drawing.nets)) < 1e-10
+    assert drawing.nets and max(publish.deviations(drawing.nets)) < 1e-12
     for V, Q, *_ in drawing.nets:
         assert len(Q) == 1 or measure.quality(V, Q).flips == 0
     claims = drawing.claims

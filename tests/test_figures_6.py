@@ -6,9 +6,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from inetlib import measure, mesh, moebius, solver
+from inetlib import measure, mesh, moebius, parallelogram, solver, surfaces
 from inetlib.drawings import fig12, fig13, patches
-from inetlib.parallelogram import angles as exact_angles
 
 STEPS = 17  # of the paper's runs
 
@@ -29,30 +28,25 @@ def no_open_figures():
     plt.close("all")
 
 
-def degrees_off(V, Q, asked):
-    return max(
-        np.degrees(np.abs(x - a)).max() for x, a in zip(measure.angles(V, Q), asked, strict=True)
-    )
+def off(V, Q, asked):
+    """The largest deviation of both angles, degrees."""
+    return np.degrees(measure.deviations(V, Q, *asked)).max()
 
 
 def good(result, Q):
-    asked = exact_angles(result.lam, result.mu)
     quality = measure.quality(result.V, Q)
-    assert degrees_off(result.V, Q, asked) < 1e-9
-    assert quality.flips == 0
-    assert quality.area_ratio > 0.05
-    assert result.converged
-    assert 1 <= len(result.history) - 1 <= STEPS
+    assert off(result.V, Q, parallelogram.angles(result.lam, result.mu)) < 1e-9
+    assert quality.flips == 0 and quality.area_ratio > 0.05
+    assert result.converged and 1 <= len(result.history) - 1 <= STEPS
 
 
 @pytest.mark.parametrize("letter", "ABCDE")
 def test_the_patch_becomes_isogonal(patch, letter):
-    _, Q, found = patch
+    V, Q, found = patch
     good(found[letter], Q)
-    names = "theta", "theta0"
-    for name, values in zip(names, measure.angles(found[letter].V, Q), strict=True):
-        wanted = fig12.SETTINGS[letter].get(name, values.mean())
-        np.testing.assert_allclose(values, wanted, atol=np.radians(1e-9))
+    wanted = fig12.SETTINGS[letter]
+    assert off(found[letter].V, Q, (wanted.get("theta"), wanted.get("theta0"))) < 1e-9
+    assert off(V, Q, (None, None)) > 20  # there was something to do
 
 
 def test_the_parallelograms_are_what_the_titles_say(patch):
@@ -88,7 +82,7 @@ def test_the_hexagon_mesh_becomes_isogonal(rings):
     assert len(Q) == 432 and len(polygon) == 6
     for letter, asked in (("A", (60, 60)), ("B", (60, 45))):
         good(found[letter], Q)
-        assert degrees_off(found[letter].V, Q, np.radians(asked)) < 1e-9
+        assert off(found[letter].V, Q, np.radians(asked)) < 1e-9
         corners = found[letter].V[polygon]
         assert np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).min() > 0.01
 
@@ -98,23 +92,11 @@ def test_the_images_are_moebius_images_and_nearly_isogonal(rings):
     for result in found.values():
         W = moebius.apply(moebius.inversion(fig13.CENTRE, fig13.RADIUS), result.V)
         assert measure.quality(W, Q).flips == 0
-        off = degrees_off(W, Q, (result.theta, result.theta0))
-        assert 0.01 < off < 2  # finite quads: not exact
+        # finite quads: not exact
+        assert 0.01 < off(W, Q, (result.theta, result.theta0)) < 2
         centre = np.array(fig13.CENTRE)
         back = centre + fig13.RADIUS**2 * (W - centre) / np.sum((W - centre) ** 2, axis=1)[:, None]
         np.testing.assert_allclose(back, result.V, atol=1e-12)
-
-
-def test_the_start_is_seen_by_the_judge(patch):
-    V, Q, found = patch
-    off = np.degrees(measure.deviations(V, Q).max(axis=0))
-    theta, theta0 = np.degrees(measure.angles(V, Q))
-    assert off[0] == pytest.approx(
-        max(abs(theta[0] - theta.mean()), abs(theta0[0] - theta0.mean()))
-    )
-    assert off.max() > 20  # there is something to do
-    assert np.all(off >= np.abs(theta0 - theta0.mean()) - 1e-12)
-    assert np.degrees(measure.deviations(found["A"].V, Q)).max() < 1e-9
 
 
 def test_the_paper_formulation_runs_from_the_same_start():
@@ -129,12 +111,10 @@ def test_the_paper_formulation_runs_from_the_same_start():
 @pytest.mark.parametrize("module", [fig12, fig13])
 def test_drawings_list_their_nets_and_steps(module):
     drawing = module.draw()
-    assert drawing.name == module.__name__.rsplit(".", 1)[1]
-    assert len(drawing.nets) == len(module.SETTINGS)
     for letter, (V, Q, *asked) in zip(module.SETTINGS, drawing.nets, strict=True):
-        assert degrees_off(V, Q, asked) < 1e-9
+        assert off(V, Q, asked) < 1e-9
         assert drawing.claims[f"{letter}_steps"] <= STEPS
-        np.testing.assert_allclose(drawing.data[f"net_{letter}"], V, atol=6e-5)
+        assert drawing.data[f"net_{letter}"] is V
 
 
 def test_four_coloured_faces_are_laid_into_their_plane(patch):
@@ -149,7 +129,7 @@ def test_four_coloured_faces_are_laid_into_their_plane(patch):
 
 
 def test_results_hardly_feel_the_last_digits_of_the_start():
-    V, Q = fig12.surfaces.freeform_patch(8, 8)
+    V, Q = surfaces.freeform_patch(8, 8)
     noise = 1e-14 * np.sin(np.arange(V.size)).reshape(V.shape)
     one, two = (solver.optimize(W, Q, theta=np.pi / 2) for W in (V, V + noise))
     assert len(one.history) == len(two.history)
