@@ -91,17 +91,15 @@ def drawn(names, folder, noise=0.0):
 def main(folder, noise=0.0):
     """Everything, into a folder."""
     matplotlib.use("Agg")
-    folder = Path(folder)
-    rewritten = {}
+    folder, rewritten = Path(folder), {}
     if not float(noise):
         np.savez(folder / "results.npz", **results())
-        variants = {name: table1.results(name) for name in table1.VARIANTS}
-        before = [(folder / f"table1.{kind}").read_bytes() for kind in ("csv", "md")]
-        table1.save(table1.rows(variants), folder)
-        if before != [(folder / f"table1.{kind}").read_bytes() for kind in ("csv", "md")]:
-            rewritten["table1"] = (folder / "table1.csv").read_text()
-    names = sorted(publish.read_manifest(FIGURES))
-    rewritten |= drawn(names, folder, float(noise))
+        tables = [folder / "table1.csv", folder / "table1.md"]
+        before = [table.read_bytes() for table in tables]
+        table1.save(table1.rows({name: table1.results(name) for name in table1.VARIANTS}), folder)
+        if before != [table.read_bytes() for table in tables]:
+            rewritten["table1"] = tables[0].read_text()
+    rewritten |= drawn(sorted(publish.read_manifest(FIGURES)), folder, float(noise))
     (folder / "rewritten.json").write_text(json.dumps([kernels(), rewritten]))
 
 

@@ -23,33 +23,31 @@ from inetlib import publish
 ROOT = Path(__file__).resolve().parent.parent
 HERE = Path(__file__).resolve().parent
 FAST = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+PRESCOTT = {"OPENBLAS_CORETYPE": "Prescott"}
 SETTINGS = {
     "default": {},
-    "BLAS of Prescott": {"OPENBLAS_CORETYPE": "Prescott"},
+    "BLAS of Prescott": PRESCOTT,
     "BLAS of Nehalem": {"OPENBLAS_CORETYPE": "Nehalem"},
     "BLAS of Sandybridge": {"OPENBLAS_CORETYPE": "Sandybridge"},
     "numpy without " + " ".join(FAST): {"NPY_DISABLE_CPU_FEATURES": " ".join(FAST)},
     "C library without FMA and AVX2": {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-FMA4"},
 }
-SETTINGS["all of them"] = {k: x for setting in SETTINGS.values() for k, x in setting.items()} | {
-    "OPENBLAS_CORETYPE": "Prescott"
-}
+ALL = {k: x for setting in SETTINGS.values() for k, x in setting.items()} | PRESCOTT
+SETTINGS["all of them"] = ALL
 ALSO = {"Prescott": "Katmai"}  # OpenBLAS's other name for it
 SHORT = [name for name in SETTINGS if name.startswith(("numpy", "all"))]
 
 
 def lacking(name):
     """Why a setting says nothing here, or ""."""
-    wanted = SETTINGS[name]
-    if wanted and platform.machine() not in ("x86_64", "AMD64"):
-        return f"{name}: only x86 has these switches, this is {platform.machine()}"
-    if "NPY_DISABLE_CPU_FEATURES" in wanted and not FAST:
-        return f"{name}: numpy found no extension of this processor to switch off"
-    if "OPENBLAS_CORETYPE" in wanted and not elsewhere.kernels():
-        return f"{name}: numpy and SciPy do not use OpenBLAS here"
-    if "GLIBC_TUNABLES" in wanted and platform.libc_ver()[0] != "glibc":
-        return f"{name}: the C library here is not glibc"
-    return ""
+    wanted, machine, libc = SETTINGS[name], platform.machine(), platform.libc_ver()[0]
+    reasons = {
+        "": machine not in ("x86_64", "AMD64") and f"only x86 has these switches, not {machine}",
+        "NPY_DISABLE_CPU_FEATURES": not FAST and "numpy found no extension to switch off",
+        "OPENBLAS_CORETYPE": not elsewhere.kernels() and "numpy does not use OpenBLAS here",
+        "GLIBC_TUNABLES": libc != "glibc" and "the C library here is not glibc",
+    }
+    return next((reasons[k] for k in ("", *wanted) if wanted and reasons[k]), "")
 
 
 @pytest.fixture(scope="module")
@@ -66,32 +64,30 @@ def somebody(tmp_path_factory):
     (start / "mine.py").write_text(
         "print('hello'); import matplotlib as m; m.rcParams['font.size']=30"
     )
-    names = "HOME", "USERPROFILE", "MPLCONFIGDIR", "MATPLOTLIBRC", "IPYTHONDIR"
-    places = home, home, home, home / "matplotlibrc", home / "ipython"
-    other = {
-        "MPLBACKEND": "svg",
-        "LC_ALL": "de_DE.UTF-8",
-        "TZ": "Asia/Tokyo",
-        "PYTHONHASHSEED": "7",
-    }
-    return other | {name: str(place) for name, place in zip(names, places, strict=True)}
+    places = {"HOME": home, "USERPROFILE": home, "MPLCONFIGDIR": home}
+    places |= {"MATPLOTLIBRC": home / "matplotlibrc", "IPYTHONDIR": home / "ipython"}
+    other = {"MPLBACKEND": "svg", "LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"}
+    return other | {"PYTHONHASHSEED": "7"} | {name: str(x) for name, x in places.items()}
 
 
 def in_setting(name, command, folder, more):
-    """Run a command of this Python in a setting, and more of an environment; what it said.
-
-    It fails with that.
-    """
+    """Run a command of this Python in a setting, and more of an environment."""
     if reason := lacking(name):
-        pytest.skip(reason)
-    done = subprocess.run(
-        [sys.executable, *map(str, command)],
-        env=os.environ | SETTINGS[name] | more | {"PYTHONPATH": str(folder)},
-        cwd=folder,
-        capture_output=True,
-        text=True,
-    )
+        pytest.skip(f"{name}: {reason}")
+    env = os.environ | SETTINGS[name] | more | {"PYTHONPATH": str(folder)}
+    words = [sys.executable, *map(str, command)]
+    done = subprocess.run(words, env=env, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
+
+
+def drawn(name, tmp_path, more, *noise):
+    """(kernels, figures that were rewritten, {name: array}) of a process in a setting."""
+    figures = tmp_path / "figures"
+    shutil.copytree(ROOT / "figures", figures)
+    in_setting(name, [HERE / "elsewhere.py", figures, *noise], ROOT, more)
+    results = figures / "results.npz"
+    found = publish.read_data(results) if results.exists() else {}
+    return *json.loads((figures / "rewritten.json").read_text()), found
 
 
 @pytest.fixture(scope="module")
@@ -106,16 +102,13 @@ def agree(one, two):
     return one.shape == two.shape and np.abs(one - two).max() <= 1e-6 * np.ptp(one)
 
 
-def check(name, here, tmp_path, more):
-    figures = tmp_path / "figures"
-    shutil.copytree(ROOT / "figures", figures)
-    in_setting(name, [HERE / "elsewhere.py", figures], ROOT, more)
-    kernels, rewritten = json.loads((figures / "rewritten.json").read_text())
+def check(name, here, tmp_path, somebody):
+    more = somebody if name == "all of them" else {}
+    kernels, rewritten, there = drawn(name, tmp_path, more)
     wanted = SETTINGS[name].get("OPENBLAS_CORETYPE")
     assert wanted is None or set(kernels) <= {wanted, ALSO.get(wanted)}
-    with np.load(figures / "results.npz") as there:
-        assert set(there.files) == set(here)
-        assert [key for key in here if not agree(here[key], there[key])] == []
+    assert set(there) == set(here)
+    assert [key for key in here if not agree(here[key], there[key])] == []
     if not outputs.PINNED:
         rewritten = {k: x for k, x in rewritten.items() if not set(x) <= {"svg", "png"}}
     assert rewritten == {}
@@ -124,20 +117,13 @@ def check(name, here, tmp_path, more):
 @pytest.mark.elsewhere
 @pytest.mark.parametrize("name", SHORT)
 def test_another_processor_gives_the_same(name, here, tmp_path, somebody):
-    check(name, here, tmp_path, somebody if name == "all of them" else {})
+    check(name, here, tmp_path, somebody)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHORT])
 def test_every_other_processor_gives_the_same(name, here, tmp_path, somebody):
-    check(name, here, tmp_path, somebody if name == "all of them" else {})
-
-
-def rewritten(noise, tmp_path):
-    figures = tmp_path / "figures"
-    shutil.copytree(ROOT / "figures", figures)
-    in_setting("default", [HERE / "elsewhere.py", figures, noise], ROOT, {})
-    return json.loads((figures / "rewritten.json").read_text())[1]
+    check(name, here, tmp_path, somebody)
 
 
 @pytest.mark.elsewhere
@@ -145,12 +131,12 @@ def rewritten(noise, tmp_path):
     not outputs.PINNED, reason="another matplotlib than the pinned one draws otherwise"
 )
 def test_figures_are_kept_when_all_that_is_drawn_is_off_by_rounding(tmp_path):
-    assert rewritten(1e-13, tmp_path) == {}
+    assert drawn("default", tmp_path, {}, 1e-13)[1] == {}
 
 
 @pytest.mark.long
 def test_figures_are_rewritten_when_all_that_is_drawn_is_off_by_more(tmp_path):
-    found = rewritten(1e-4, tmp_path)
+    found = drawn("default", tmp_path, {}, 1e-4)[1]
     assert set(found) == set(publish.read_manifest(ROOT / "figures"))
     assert all({"svg", "png"} <= set(words) for words in found.values())
 
