@@ -24,14 +24,8 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 MANIFEST = publish.read_manifest(ROOT / "figures")
 
 
-def code_cells(path):
-    return [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == "code"]
-
-
-def pictures_of(cell):
-    """The pictures below the cell as arrays of grey or RGBA values in [0, 1]."""
-    found = [o.data["image/png"] for o in cell.outputs if "image/png" in o.get("data", {})]
-    return [matplotlib.image.imread(io.BytesIO(base64.b64decode(png))) for png in found]
+def cells_of(path, kind="code"):
+    return [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == kind]
 
 
 @pytest.fixture(scope="module", params=NOTEBOOKS, ids=lambda path: path.stem)
@@ -43,19 +37,17 @@ def rerun(request, tmp_path_factory):
     shutil.copy(request.param, copy)
     command = [sys.executable, "-m", "pytest", "--nbmake", "--overwrite", "--nbmake-timeout=300"]
     command += ["-q", "-p", "no:cacheprovider", "--rootdir", str(folder), str(copy)]
-    settings = tmp_path_factory.mktemp("settings")
-    environment = outputs.environment(settings)
+    environment = outputs.environment(tmp_path_factory.mktemp("settings"))
     environment |= {"PYTEST_ADDOPTS": "", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
-    done = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, errors="replace"
-    )
+    text = {"capture_output": True, "text": True, "errors": "replace"}
+    done = subprocess.run(command, cwd=folder, env=environment, **text)
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
     return request.param, copy, folder / "figures"
 
 
 @pytest.mark.notebook
 def test_a_rerun_prints_and_draws_what_is_stored(rerun):
-    stored, fresh = (code_cells(path) for path in rerun[:2])
+    stored, fresh = (cells_of(path) for path in rerun[:2])
     assert len(stored) == len(fresh) > 0
     for old, new in zip(stored, fresh, strict=True):
         looks = {} if outputs.PINNED else {"looks": outputs.ALIKE}
@@ -65,7 +57,7 @@ def test_a_rerun_prints_and_draws_what_is_stored(rerun):
 @pytest.mark.notebook
 def test_a_rerun_draws_the_stored_figures(rerun):
     stored, _, figures = rerun
-    tags = {t for cell in code_cells(stored) for t in outputs.tags(cell)}
+    tags = {t for cell in cells_of(stored) for t in outputs.tags(cell)}
     tagged = {t for t in tags if t.startswith(("fig", "beyond"))}
     drawn = publish.read_manifest(figures)
     assert set(drawn) == tagged
@@ -79,28 +71,20 @@ def test_a_rerun_draws_the_stored_figures(rerun):
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_stored_notebooks_hold_their_outputs_and_no_errors(path):
-    cells = code_cells(path)
+def test_stored_notebooks_have_a_guide_exercises_outputs_and_pictures(path):
+    cells = cells_of(path)
+    shown = [o for c in cells for o in c.outputs]
     assert [c.execution_count for c in cells] == list(range(1, len(cells) + 1))
-    assert all(o.output_type != "error" for c in cells for o in c.outputs)
-    assert not any(o.get("name") == "stderr" for c in cells for o in c.outputs)
+    assert not any(o.output_type == "error" or o.get("name") == "stderr" for o in shown)
     assert path.stat().st_size < 1_200_000
-
-
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_every_stored_picture_shows_something(path):
-    pictures = [picture for cell in code_cells(path) for picture in pictures_of(cell)]
-    assert pictures
-    for picture in pictures:
-        assert min(picture.shape[:2]) > 100 and picture[..., :3].std() > 0.02
-
-
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebooks_open_with_a_guide_and_end_with_exercises(path):
-    cells = nbformat.read(path, as_version=4).cells
-    texts = [c.source for c in cells if c.cell_type == "markdown"]
+    texts = [c.source for c in cells_of(path, "markdown")]
     assert texts[0].startswith("# ") and "What you will see" in texts[0] and "ection" in texts[0]
     assert "## Try it" in texts[-1]
+    files = [o.data["image/png"] for o in shown if "image/png" in o.get("data", {})]
+    pictures = [matplotlib.image.imread(io.BytesIO(base64.b64decode(png))) for png in files]
+    assert pictures
+    for picture in pictures:  # shows something
+        assert min(picture.shape[:2]) > 100 and picture[..., :3].std() > 0.02
 
 
 def test_the_folder_of_figures_holds_what_the_manifest_names():
