@@ -389,7 +389,7 @@ def test_lam_range_for_theta_parallelograms_ends_at_root_two_plus_minus_one():
     [
         (5, 2, r"lam = 5 at mu = 2 .* between 0\.333333 and 3 "),
         (3, 2, r"lam = 3 at mu = 2 .* between 0\.333333 and 3 "),
-        (1, -2, r"mu = -2: both ratios must be positive and finite"),
+        (1, -2, r"mu = -2: both must be positive and finite"),
         (np.nan, 1, r"lam = nan, .* positive and finite"),
         (np.inf, 1, r"lam = inf, .* positive and finite"),
         ([1, 2, 2], [1, 1, 9], r"lam = 2 at mu = 9 .* between 0\.8 and 1\.25 "),
