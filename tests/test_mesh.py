@@ -167,12 +167,12 @@ def test_grid_quads_are_counter_clockwise_from_the_top_left():
 
 @pytest.mark.parametrize("size", [(0, 1), (1, 0), (-2, 3), (float("nan"), 1)])
 def test_a_grid_without_quads_is_refused(size):
-    with pytest.raises(ValueError, match=rf"m = {size[0]}, n = {size[1]}: .* at least one quad"):
+    with pytest.raises(ValueError, match=r"[mn] = \S+: a whole number, 1 or more"):
         mesh.grid_quads(*size)
 
 
 def test_a_fraction_of_a_quad_is_refused_and_a_whole_float_is_a_number():
-    with pytest.raises(ValueError, match=r"m = 2\.5, n = 1: whole numbers"):
+    with pytest.raises(ValueError, match=r"m = 2\.5: a whole number, 1"):
         mesh.grid_quads(2.5, 1)
     assert mesh.grid_quads(2.0, 1).dtype == np.int64
 
@@ -242,7 +242,7 @@ def test_four_sides_give_a_piece_of_the_square_lattice():
 
 @pytest.mark.parametrize("bad", [(2, 1), (6, 0), (-1, 3)])
 def test_a_polygon_without_rings_or_with_two_sides_is_refused(bad):
-    with pytest.raises(ValueError, match=rf"sides = {bad[0]}, rings = {bad[1]}: needs"):
+    with pytest.raises(ValueError, match=r"(sides|rings) = -?\d: a whole number, [31] or"):
         mesh.polygon_rings(*bad)
 
 
@@ -260,12 +260,12 @@ BAD = {
     "no faces": (positions(2, 2), np.zeros((0, 4), dtype=int), "the mesh has no faces"),
     "an empty list": (positions(2, 2), [], "the mesh has no faces"),
     "triangles": (positions(2, 2), GRID[:, :3], "the faces are triangles: quads are wanted"),
-    "pentagons": (positions(2, 2), [[0, 1, 2, 3, 4]], r"an array of shape \(1, 5\)"),
-    "one flat list": (positions(2, 2), GRID.ravel(), r"an array of shape \(16,\)"),
+    "pentagons": (positions(2, 2), [[0, 1, 2, 3, 4]], r"faces of shape \(1, 5\)"),
+    "one flat list": (positions(2, 2), GRID.ravel(), r"faces of shape \(16,\)"),
     "floats": (positions(2, 2), GRID.astype(float), "of type float64: integers are wanted"),
     "booleans": (positions(2, 2), GRID > 3, "of type bool: integers are wanted"),
     "a negative index": (positions(2, 2), GRID - 1, "face 0 names vertex -1: counting starts at 0"),
-    "counting from one": (positions(2, 2), GRID + 1, "face 3 names vertex 9, .* only 9 vertices"),
+    "counting from one": (positions(2, 2), GRID + 1, "face 3 names vertex 9: .* only 9 vertices"),
     "a vertex twice": (positions(2, 2), [[0, 1, 2, 3], [4, 5, 6, 5]], "face 1 uses a vertex twice"),
     "a doubled end": (positions(2, 2), [[3, 1, 2, 3]], "face 0 uses a vertex twice"),
     "NaN": (bad_coordinate(np.nan), GRID, "vertex 5 has a coordinate that is not a finite number"),
@@ -765,7 +765,7 @@ def test_triangles_stay_as_they_are_and_squares_are_cut_along_v1_v3():
 def test_triangles_refuses_other_faces_and_missing_vertices():
     with pytest.raises(ValueError, match=r"shape \(1, 5\): rows of three or four vertices"):
         mesh.triangles(positions(2, 2), [[0, 1, 2, 3, 4]])
-    with pytest.raises(ValueError, match="face 0 names vertex 4, but there are only 4 vertices"):
+    with pytest.raises(ValueError, match="face 0 names vertex 4: there are only 4 vertices"):
         mesh.triangles(positions(1, 1), [[0, 1, 4]])
     with pytest.raises(ValueError, match="face 0 uses a vertex twice"):
         mesh.triangles(positions(1, 1), [[0, 1, 1]])
