@@ -277,7 +277,7 @@ def gaps(lam: Number, mu: Number) -> tuple[Number, Number, Number, Number]:
     return alpha, theta0 - alpha, library(lam, mu).pi - theta0 - beta, beta
 
 
-def oriented_area(a: Number, b: Number) -> Number:
+def _oriented_area(a, b):
     """Im(conj(a) b) of complex numbers, arrays or sympy expressions."""
     if any(hasattr(z, "as_real_imag") for z in (a, b)):
         import sympy
@@ -294,7 +294,7 @@ def cross_ratio(a: Number, b: Number, c: Number, d: Number) -> Number:
 
     Paper: B10.
     """
-    below = oriented_area(a, d) * oriented_area(b, c)
+    below = _oriented_area(a, d) * _oriented_area(b, c)
     if np.any(below == 0):
         raise ValueError("two of the lines coincide: the cross ratio is infinite")
-    return oriented_area(a, c) * oriented_area(b, d) / below
+    return _oriented_area(a, c) * _oriented_area(b, d) / below
