@@ -26,16 +26,7 @@ def unit(direction: complex) -> complex:
     return direction / abs(direction)
 
 
-def sheared_grid(
-    theta: float,
-    theta0: float,
-    m: int,
-    n: int,
-    origin: complex = 0,
-    edge: float = 1.0,
-    direction: complex = 1,
-    kappa: complex = 0,
-) -> np.ndarray:
+def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0) -> np.ndarray:
     """A planar grid of congruent cells with (theta, theta0)-parallelograms inside.
 
     Its lines meet at theta0 and the diagonals of its cells at theta.  z[i, j] = origin + i u + j v
@@ -91,12 +82,7 @@ def _line(point, direction):
 
 
 def inversion_circle(point: Number, direction: Number) -> tuple[Number, Number]:
-    """Centre (complex) and radius of the circle onto which 1/z takes a line.
-
-    Numbers or sympy symbols; ValueError when the line passes through 0: its image is a line.
-
-    Paper: App. A.2.
-    """
+    """Centre and radius of the circle onto which 1/z takes a line.  Paper: App. A.2."""
     a, b, h = _line(point, direction)
     xp = library(a, b, h)
     length = xp.sqrt(a * a + b * b)
@@ -109,8 +95,7 @@ def inversion_circle(point: Number, direction: Number) -> tuple[Number, Number]:
 def square_conic(point: Number, direction: Number) -> tuple[Number, ...]:
     """(A, B, C, D, E, F) of the parabola onto which z^2 takes a line; B^2 = 4 A C.
 
-    A u^2 + B u v + C v^2 + D u + E v + F = 0 in w = u + iv; numbers or sympy symbols.  For a
-    line through 0 it is a doubled ray.
+    A u^2 + B u v + C v^2 + D u + E v + F = 0 in w = u + iv; a doubled ray where the line meets 0.
 
     Paper: App. A.2.
     """
@@ -122,10 +107,7 @@ def square_conic(point: Number, direction: Number) -> tuple[Number, ...]:
 
 
 def square_bezier(start: Number, end: Number) -> tuple[Number, Number, Number]:
-    """The control points of the Bezier curve onto which z^2 takes a segment: ((1-t) s + t e)^2.
-
-    Paper: App. A.2, Fig. 3.
-    """
+    """Control points of the Bezier curve ((1-t) s + t e)^2.  Paper: App. A.2, Fig. 3."""
     return start**2, start * end, end**2
 
 
@@ -181,10 +163,7 @@ def _to_zero_one_infinity(p):
 
 
 def cell_errors(f: Callable, z: complex, u: complex, v: complex) -> tuple[complex, complex]:
-    """(ln K/K0, ln R/R0) of the image under f of the cell with the edges u, v around z.
-
-    Paper: B6.
-    """
+    """(ln K/K0, ln R/R0) of the image of the cell with edges u, v around z.  Paper: B6."""
     if not (np.imag(np.conj(u) * v) != 0 and np.isfinite([z, u, v]).all()):
         raise ValueError(f"u = {u}, v = {v}: finite edges that are not parallel are wanted")
     cell = z + np.array([[-u - v, v - u], [u - v, u + v]]) / 2
@@ -193,10 +172,7 @@ def cell_errors(f: Callable, z: complex, u: complex, v: complex) -> tuple[comple
 
 
 def leading_errors(first: Number, third: Number, u: Number, v: Number) -> tuple[Number, Number]:
-    """What `cell_errors` are to second order, from f' and f''' at the centre of the cell.
-
-    Paper: B6.
-    """
+    """`cell_errors` to second order, from f' and f''' at the centre of the cell.  Paper: B6."""
     if library(first) is np and not np.all(first):
         raise ValueError("f' = 0: the map is not conformal there")
     return third / first * u * v / 6, third / first * (u**2 - v**2) / 12

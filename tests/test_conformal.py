@@ -84,10 +84,10 @@ def test_an_exact_compensation_tends_to_the_plain_grid():
 BAD_GRIDS = {
     "degrees": (dict(theta=60), "theta = 60 rad"),
     "theta0": (dict(theta0=np.pi), r"theta0 = 3\.14159 rad"),
-    "no rows": (dict(n=0), "m = 2, n = 0: .* at least one quad"),
-    "half a quad": (dict(m=2.5), r"m = 2\.5, n = 3: whole numbers"),
-    "negative edge": (dict(edge=-1), "edge = -1: a positive length"),
-    "no edge": (dict(edge=np.nan), "edge = nan: a positive length"),
+    "no rows": (dict(n=0), "n = 0: a whole number, 1 or more"),
+    "half a quad": (dict(m=2.5), r"m = 2\.5: a whole number"),
+    "negative edge": (dict(edge=-1), "edge = -1: a positive finite number"),
+    "no edge": (dict(edge=np.nan), "edge = nan: a positive finite number"),
     "no direction": (dict(direction=0), "direction = 0: a complex number other than 0"),
     "endless direction": (dict(direction=np.inf), "direction = inf"),
 }
