@@ -35,9 +35,7 @@ class Planar(NamedTuple):
     message: str  # all this in words
 
 
-def planar_net(
-    Q: ArrayLike, theta: float, theta0: float, handles=None, boundary=None, start=None, smooth=0.01
-) -> Planar:
+def planar_net(Q, theta, theta0, handles=None, boundary=None, start=None, smooth=0.01) -> Planar:
     """The smoothest isogonal net in the plane through given points, as a `Planar`.
 
     Q (f, 4): any consistently labelled connected mesh.  Points are complex numbers, (k, 2) or
