@@ -45,9 +45,8 @@ def grid_quads(m: int, n: int) -> np.ndarray:
 def polygon_rings(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """A polygon with 3 or more corners of valence 4, surrounded by rings of nearly square quads.
 
-    Returns (V, Q, polygon): vertices in the plane z = 0, quads, and the polygon's corners
-    counter-clockwise.  Ring k has 2 sides k quads.  For even `sides` the quads are labelled;
-    for odd ones no labelling exists (see `label`).
+    Returns (V, Q, polygon): vertices in the plane z = 0, quads, labelled for even `sides`, and
+    the polygon's corners counter-clockwise.  Ring k has 2 sides k quads.
     """
     sides, rings = check_whole("sides", sides, 3), check_whole("rings", rings)
     size = rings + 1  # one sector is a size x size lattice, the polygon's corner at (0, 0)
@@ -214,8 +213,7 @@ def crossings(Q: np.ndarray) -> np.ndarray:
 def two_colour(count: int, a: np.ndarray, b: np.ndarray, differ: np.ndarray) -> tuple:
     """Booleans x with x[a] xor x[b] = differ, and None; or (None, a loop that forbids it).
 
-    count: how many nodes; a, b: node indices (k,); differ: booleans (k,).  Solvable exactly
-    when the double cover with the nodes i and i + count is disconnected.
+    a, b (k,) of count nodes.  Solvable when the double cover i, i + count is disconnected.
     """
     rows = np.concatenate([a, a + count])
     cols = np.concatenate([b + count * differ, b + count * ~differ])
@@ -246,10 +244,8 @@ def require_labels(Q):
 def label(Q: ArrayLike) -> np.ndarray:
     """The same faces, oriented alike and labelled alike; each component keeps its first face.
 
-    Q: a manifold with any orientation and labels.  ValueError names what forbids a labelling:
-    an odd interior vertex, a boundary loop with an odd sum of (valence - 1), or a loop of faces.
-
-    Paper: B9.
+    ValueError names what forbids it: an odd interior vertex, a boundary loop with an odd sum of
+    (valence - 1), or a loop of faces.  Paper: B9.
     """
     Q = check_quads(Q).copy()
     one, two = pairs(Q).T
@@ -294,9 +290,7 @@ class Families(NamedTuple):
 def polylines(Q: ArrayLike) -> Families:
     """The mesh curves along u-edges, v-edges, diagonals v1 v3 (Y_u) and diagonals v2 v4 (Y_v).
 
-    Q labelled, else ValueError.  Curves end at the boundary and at singular vertices.
-
-    Paper: Thm 8.
+    Q labelled, else ValueError.  They end at boundary and singular vertices.  Paper: Thm 8.
     """
     require_labels(Q)
     Q = np.asarray(Q)
@@ -349,8 +343,7 @@ def triples(Q: ArrayLike) -> np.ndarray:
 def triangles(V: ArrayLike, F: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The mesh as triangles: (V float64, T (t, 3) int64); a quad is cut along its shorter diagonal.
 
-    F: quads, or triangles, which stay; ValueError as in `check_arrays`.  Quad k becomes the
-    rows 2 k and 2 k + 1; diagonals of equal length (see `ties`): along v1 v3.
+    Triangles stay.  Quad k becomes the rows 2 k and 2 k + 1; equal diagonals (see `ties`): v1 v3.
     """
     F = check_faces(F)
     V = _check_vertices(V, F)
@@ -362,20 +355,16 @@ def triangles(V: ArrayLike, F: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Checkerboard(NamedTuple):
-    """A checkerboard pattern: V (e, 3) edge midpoints, black (f, 4), white (w, 4), others."""
+    """A checkerboard pattern, by mid-edge subdivision."""
 
-    V: np.ndarray
-    black: np.ndarray
-    white: np.ndarray
-    others: list
+    V: np.ndarray  # (e, 3) midpoints of the edges
+    black: np.ndarray  # (f, 4) parallelograms, corners on the edges v1 v2, v2 v3, v3 v4, v4 v1
+    white: np.ndarray  # (w, 4) quads around interior vertices of valence 4
+    others: list  # polygons around the other interior vertices
 
 
 def checkerboard(V: ArrayLike, Q: ArrayLike) -> Checkerboard:
-    """The checkerboard pattern of a quad mesh by mid-edge subdivision.
-
-    `black` (f, 4) are the inscribed parallelograms, corners on the edges v1 v2, v2 v3, v3 v4,
-    v4 v1 in that order; `white` (w, 4) the quads around interior vertices of valence 4;
-    `others` the polygons around the remaining interior vertices.
+    """The checkerboard pattern of a quad mesh.
 
     Paper: Cor. 9, Cor. 15, Cor. 16, Cor. 17, Cor. 18.
     """
@@ -393,9 +382,8 @@ def checkerboard(V: ArrayLike, Q: ArrayLike) -> Checkerboard:
 def diagonal_meshes(Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The two diagonal meshes (Qa, Qb), on the vertices of a labelled mesh Q.
 
-    The vertices are coloured like a chessboard, ValueError where they cannot be; the four
-    neighbours of an interior vertex of valence 4 form a face, with u along d1 and v along d2.
-    Qa has the corners that share the colour of vertex Q[0, 0].
+    The four neighbours of an interior vertex of valence 4 form a face, u along d1, v along d2.
+    On a chessboard colouring, ValueError without one, Qa has the colour of vertex Q[0, 0].
     """
     fan = crossings(Q)
     Q = np.asarray(Q)
