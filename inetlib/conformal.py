@@ -34,9 +34,7 @@ def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0) 
 
     kappa is f'''/f' of the map f that is to follow, where that is constant: 0 for z and z^2,
     1 for exp, -1 for sin and cos, c^2 for exp(cz).  The image of the grid then has both angles
-    exactly, at any size of the cells; the grid itself up to O(edge^2).
-
-    Paper: App. A.2, B3, B6.
+    exactly, at any size of the cells; the grid itself up to O(edge^2).  Paper: App. A.2, B3, B6.
     """
     shape = rho(*ratios(theta, theta0))
     m, n = mesh.check_counts(m, n)
@@ -59,9 +57,7 @@ def quads(z: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 
 
 def complex_ratios(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(K, R) of every cell of a grid: K = d2 / d1 and R = m24 / m13, complex (m, n).
-
-    An isogonal net has the constants K = lam exp(i theta) and R = exp(i theta0) / mu.
+    """(K, R) of every cell: d2 / d1 = lam exp(i theta) and m24 / m13 = exp(i theta0) / mu.
 
     Paper: Eq. (11), Eq. (12) in complex form, B6.
     """
@@ -115,9 +111,7 @@ def image_lines(f: Callable, z: np.ndarray, samples: int = 33) -> tuple[np.ndarr
     """The two families of grid lines under a map f of complex arrays, finely sampled.
 
     Each straight edge of the grid is sampled at `samples` points, 2 or more, before it is
-    mapped: (n+1, m (samples-1) + 1) along u and (m+1, n (samples-1) + 1) along v.
-
-    Paper: Fig. 3.
+    mapped: (n+1, m (samples-1) + 1) along u and (m+1, n (samples-1) + 1) along v.  Paper: Fig. 3.
     """
     samples = check_whole("samples", samples, 2)
     return f(_refine(z, samples).T), f(_refine(z.T, samples).T)
@@ -182,9 +176,7 @@ def kappa(f: Number, z: Number) -> Number:
     """f'''/f' of a sympy expression f in the symbol z, simplified; ValueError for a constant f.
 
     Where it is a constant, and only there, the ratios of all images of congruent cells agree at
-    every mesh size: f is a + b z + c z^2 or a + b exp(gz) + c exp(-gz), kappa = g^2.
-
-    Paper: B6.
+    every mesh size: f is a + b z + c z^2 or a + b exp(gz) + c exp(-gz), kappa = g^2.  Paper: B6.
     """
     import sympy
 

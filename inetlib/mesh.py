@@ -364,10 +364,7 @@ class Checkerboard(NamedTuple):
 
 
 def checkerboard(V: ArrayLike, Q: ArrayLike) -> Checkerboard:
-    """The checkerboard pattern of a quad mesh.
-
-    Paper: Cor. 9, Cor. 15, Cor. 16, Cor. 17, Cor. 18.
-    """
+    """The pattern of a quad mesh.  Paper: Cor. 9, Cor. 15, Cor. 16, Cor. 17, Cor. 18."""
     V, Q = check_arrays(V, Q)
     twin, half = twins(Q), np.arange(Q.size)
     owner = np.where((twin >= 0) & (twin < half), twin, half)

@@ -290,9 +290,7 @@ def _oriented_area(a, b):
 def cross_ratio(a: Number, b: Number, c: Number, d: Number) -> Number:
     """(a, b; c, d) of four lines through a point, given by complex directions; -1: harmonic.
 
-    ValueError when a and d or b and c are parallel.
-
-    Paper: B10.
+    ValueError when a and d or b and c are parallel.  Paper: B10.
     """
     below = _oriented_area(a, d) * _oriented_area(b, c)
     if np.any(below == 0):

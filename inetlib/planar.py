@@ -50,9 +50,7 @@ def planar_net(Q, theta, theta0, handles=None, boundary=None, start=None, smooth
 
     The equations hold to round-off.  Orientation is kept by them, but edges of a face may
     cross where too much is asked: see `faults`.  ValueError for bad input, for handles that no
-    net passes through and for nets that collapse.
-
-    Paper: B7.
+    net passes through and for nets that collapse.  Paper: B7.
     """
     K = factor_k(theta, theta0)
     Q, count = _check_mesh(Q)
