@@ -170,10 +170,8 @@ def test_an_outline_that_a_net_has_is_met():
     rim = (ends[:, None] * (1 - t) + np.roll(ends, -1)[:, None] * t).ravel() ** 2
     corners = [0, 8, 12 * 9, 13 * 9 - 1]
     Q = mesh.grid_quads(12, 8)
-    for given, most in (
-        ({"handles": (corners, z.ravel()[corners])}, 1e-4),
-        ({"start": z.ravel() * 1.01}, 1e-3),
-    ):
+    handles, start = {"handles": (corners, z.ravel()[corners])}, {"start": z.ravel() * 1.01}
+    for given, most in ((handles, 1e-4), (start, 1e-3)):
         net = planar.planar_net(Q, T, T0, boundary=rim[::-1], smooth=1e-6, **given)
         assert net.distance < most
         require_exact(net, Q, (60, 45))
@@ -220,10 +218,8 @@ def test_the_nets_of_the_drawing():
     leaf, Q, _, _ = beyond_planar.leaf()
     assert leaf.distance < 1e-3
     require_exact(leaf, Q, (60, 60))
-    for net, Q, degrees in (
-        (*beyond_planar.annulus()[:2], (60, 60)),
-        (*beyond_planar.hexagon()[:2], (60, 45)),
-    ):
+    others = (*beyond_planar.annulus()[:2], (60, 60)), (*beyond_planar.hexagon()[:2], (60, 45))
+    for net, Q, degrees in others:
         require_exact(net, Q, degrees)
         assert len(net.flipped) == len(net.wound) == 0
     with pytest.raises(ValueError, match="multiple of 4"):
