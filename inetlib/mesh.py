@@ -293,7 +293,7 @@ def polylines(Q: ArrayLike) -> Families:
     Q labelled, else ValueError.  They end at boundary and singular vertices.  Paper: Thm 8.
     """
     require_labels(Q)
-    Q = np.asarray(Q)
+    Q = check_quads(Q)
     return Families(*(chains(edges) for edges in (*_edges(Q), Q[:, ::2], Q[:, 1::2])))
 
 
@@ -382,8 +382,7 @@ def diagonal_meshes(Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     The four neighbours of an interior vertex of valence 4 form a face, u along d1, v along d2.
     On a chessboard colouring, ValueError without one, Qa has the colour of vertex Q[0, 0].
     """
-    fan = crossings(Q)
-    Q = np.asarray(Q)
+    fan, Q = crossings(Q), check_quads(Q)
     start, end = half_edges(Q)
     colour, loop = two_colour(Q.max() + 1, start, end, np.ones(start.size, dtype=bool))
     if loop is not None:
