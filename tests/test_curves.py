@@ -89,7 +89,7 @@ def test_scaling_the_points_scales_the_length():
             r"grid point \(1,\) asks for arc length 99 on a curve of length 9.9",
         ),
         (
-            lambda: developable.require([[True, False]], lambda at: "fails"),
+            lambda: developable._require([[True, False]], lambda at: "fails"),
             r"grid point \(0, 1\) fails",
         ),
     ],
