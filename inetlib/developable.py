@@ -1,14 +1,14 @@
 """Isometric bending of planar nets: cylinders, cones, and the surface along any geodesic.
 
-A planar net is a complex array z, or a real one (..., 2); every map here returns points
-(..., 3) and keeps lengths, angles and areas measured along the surface.  At its flat end each
-map leaves the net where it is, in the plane z = 0.
+A planar net is a complex array z, or a real one (..., 2); the maps return points (..., 3),
+keep lengths along the surface, and at their flat end leave the net in the plane z = 0.
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from numpy.linalg import norm
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 from scipy.optimize import root
@@ -24,18 +24,17 @@ FAULTS = {
     BEHIND: "lies behind the edge of regression: y psi' < sin(psi)^2 fails on the way from (x, 0)",
     BEYOND: "lies beyond the last ruling of the curve: take a longer curve",
 }
-DIFFERENCES = 4 / 5, -1 / 5, 4 / 105, -1 / 280  # of eighth order, central
 
 
 class Curve(NamedTuple):
     """A regular curve by arc length, made by `arc_length`.
 
-    position  position(t, k): the k-th derivative at the parameters t, (..., 2 or 3)
-    integral  integral(t): the arc length from the start to t
+    position(t, k): the k-th derivative at the parameters t, (..., 2 or 3); integral(t): the arc
+    length from the start to t, a polynomial of numpy.
     """
 
     position: Callable
-    integral: Callable
+    integral: Chebyshev
     start: float
     stop: float
     length: float
@@ -43,10 +42,9 @@ class Curve(NamedTuple):
     def parameter(self, s: ArrayLike) -> np.ndarray:
         """The parameters t at the arc lengths s; ValueError outside [0, length]."""
         s, slack = np.asarray(s, dtype=float), 1e-9 * self.length
-        _require(
-            (s >= -slack) & (s <= self.length + slack),
-            lambda at: f"asks for arc length {s[at]:.6g} on a curve of length {self.length:.6g}",
-        )
+        room = f"on a curve of length {self.length:.6g}"
+        inside = (s >= -slack) & (s <= self.length + slack)
+        _require(inside, lambda at: f"asks for arc length {s[at]:.6g} {room}")
         t = np.linspace(self.start, self.stop, 257)
         t = np.interp(s, self.integral(t), t)
         for _ in range(6):  # Newton
@@ -84,14 +82,14 @@ def bezier(points: ArrayLike) -> Callable:
 def arc_length(position: Callable, start: float = 0.0, stop: float = 1.0) -> Curve:
     """A `Curve` from position(t, k), the k-th derivative of a curve on start <= t <= stop.
 
-    The speed is expanded in Chebyshev polynomials to round-off, so arc lengths are good to
-    about 1e-13 of the length.  ValueError when the curve stops on its way (a cusp).
+    Arc lengths are good to about 1e-13 of the length, by Chebyshev polynomials.  ValueError
+    when the curve stops on its way (a cusp).
     """
     if not (np.isfinite([start, stop]).all() and start < stop):
         raise ValueError(f"the curve runs from {start} to {stop}: start < stop is wanted")
 
     def speed(t):
-        return np.linalg.norm(position(t, 1), axis=-1)
+        return norm(position(t, 1), axis=-1)
 
     for degree in (32, 64, 128, 256, 512, 1024):
         series = Chebyshev.interpolate(speed, degree, domain=[start, stop])
@@ -103,15 +101,15 @@ def arc_length(position: Callable, start: float = 0.0, stop: float = 1.0) -> Cur
     raise ValueError("the curve has a cusp, or nearly one: its speed vanishes or jumps there")
 
 
-def roll_coordinates(x: ArrayLike, y: ArrayLike, curvature: float) -> tuple:
+def roll_coordinates(x: np.ndarray, y: np.ndarray, curvature: float) -> tuple:
     """Coordinates (X, Y, Z) of the plane point (x, y) on a cylinder with rulings along y.
 
     X = sin(k x) / k, Y = y, Z = (1 - cos(k x)) / k for the curvature k, written so that k = 0
     is the plane; numbers, arrays or sympy symbols.
     """
-    xp = library(x, y, curvature)
 
     def sinc(t):
+        xp = library(t)
         return np.sinc(t / np.pi) if xp is np else xp.sin(t) / t
 
     turn = curvature * x
@@ -121,9 +119,8 @@ def roll_coordinates(x: ArrayLike, y: ArrayLike, curvature: float) -> tuple:
 def roll(z: np.ndarray, curvature: float, direction: complex = 1) -> np.ndarray:
     """A planar net rolled onto a rotational cylinder of radius 1 / |curvature|: (..., 3).
 
-    direction: along which the sheet curls (its length ignored), across the rulings.  The
-    ruling through 0 stays where it is; a negative curvature bends down.  The cylinder closes
-    when curvature times the width along `direction` is 2 pi.
+    direction: across the rulings, its length ignored.  The ruling through 0 stays where it is,
+    a negative curvature bends down, and a width of 2 pi / curvature closes.
 
     Paper: Fig. 7.
     """
@@ -135,7 +132,7 @@ def roll(z: np.ndarray, curvature: float, direction: complex = 1) -> np.ndarray:
     return _space((x + 1j * y) * along, height)
 
 
-def cone_coordinates(distance: ArrayLike, angle: ArrayLike, gamma: float) -> tuple:
+def cone_coordinates(distance: np.ndarray, angle: np.ndarray, gamma: float) -> tuple:
     """Coordinates (X, Y, Z) of a plane point in polar coordinates on a cone, apex at 0.
 
     gamma: the angle between the rulings and the z-axis; numbers, arrays or sympy symbols.
@@ -149,10 +146,9 @@ def cone_coordinates(distance: ArrayLike, angle: ArrayLike, gamma: float) -> tup
 def cone(z: np.ndarray, gamma: float, apex: complex = 0, direction: complex = 1) -> np.ndarray:
     """A planar net bent onto a rotational cone with a vertical axis: (..., 3).
 
-    gamma: radians in (0, pi), the angle between the rulings and the upward axis: pi/2 is the
-    plane, less opens upwards, more downwards; direction: of the ruling that keeps its vertical
-    plane.  The sheet is slit opposite to it and may span an angle of at most 2 pi sin(gamma)
-    around the apex: then the cone closes.
+    gamma: radians in (0, pi), between the rulings and the upward axis: pi/2 is the plane, less
+    opens upwards; direction: of the ruling that keeps its vertical plane.  The sheet is slit
+    opposite to it; with an angle of 2 pi sin(gamma) around the apex, the largest, it closes.
 
     Paper: Fig. 7.
     """
@@ -192,7 +188,7 @@ def darboux(curve: Curve, t: np.ndarray) -> tuple:
     """
     r1, r2, r3, r4 = (curve.position(t, k) for k in (1, 2, 3, 4))
     b = np.cross(r1, r2)
-    speed, size = _norm(r1), _norm(b)
+    speed, size = norm(r1, axis=-1), norm(b, axis=-1)
     scale = (speed / size) ** 3  # tau / kappa = scale det(r1, r2, r3)
     cot = scale * np.sum(b * r3, axis=-1)
     growth = np.sum(r1 * r2, axis=-1) / speed**2
@@ -205,9 +201,9 @@ def rectifying(z: np.ndarray, curve: Curve) -> np.ndarray:
     """A planar net bent so that the x-axis becomes the given space curve, a geodesic: (..., 3).
 
     The ruling at arc length s makes the angle psi(s) with the x-axis, so the point (x, y) lies
-    on the one with x - s = y cot psi(s).  The side y > 0 is that of the binormal.  ValueError
-    names the first point behind the edge of regression, where y psi' < sin(psi)^2 fails, or
-    beyond the last ruling; a curve whose curvature vanishes has no rulings.
+    on the one with x - s = y cot psi(s); y > 0 is the side of the binormal.  ValueError names
+    the first point behind the edge of regression or beyond the last ruling, and a place where
+    the curvature vanishes.
 
     Paper: Fig. 7.
     """
@@ -280,8 +276,8 @@ def tangent(bend: Callable, z: ArrayLike, direction: ArrayLike, step: float = 0.
     order step^8; the points z +- 4 step direction must lie on the surface.
     """
     z, change = np.broadcast_arrays(np.asarray(z, dtype=complex), step * np.asarray(direction))
-    pairs = (bend(z + k * change) - bend(z - k * change) for k in (1, 2, 3, 4))
-    return sum(c * pair for c, pair in zip(DIFFERENCES, pairs, strict=True)) / step
+    weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
+    return sum(c * (bend(z + k * change) - bend(z - k * change)) for k, c in weights.items()) / step
 
 
 def rolled_grid(
@@ -296,10 +292,9 @@ def rolled_grid(
 ) -> np.ndarray:
     """A planar grid, complex (m+1, n+1), that is an exact isogonal net when rolled.
 
-    As `conformal.sheared_grid`, but the step v is changed a little, so that the chords of
-    `roll(z, curvature)` have exactly the angles theta and theta0 in every face.  For the
-    direction 1 and edge = 2 pi / (m curvature) the net closes.  ValueError when the edge is
-    too long for such a face.
+    As `conformal.sheared_grid`, with another step v: the chords of `roll(z, curvature)` have
+    both angles exactly.  For the direction 1 and edge = 2 pi / (m curvature) the net closes.
+    ValueError when the edge is too long for such a face.
     """
     lam, mu = ratios(theta, theta0)
     if not np.isfinite(curvature):
@@ -343,10 +338,6 @@ def _space(xy, height):
     return np.stack([xy.real, xy.imag, height], axis=-1)
 
 
-def _norm(a):
-    return np.sqrt(np.sum(a * a, axis=-1))
-
-
 def _require(good, why):
     """ValueError that names the first grid point that is not good; why(index) says the rest."""
     if not np.all(good):
@@ -355,7 +346,7 @@ def _require(good, why):
 
 
 def _require_dimension(curve, dimension):
-    found = np.shape(curve.position(curve.start, 0))[-1]
+    found = len(curve.position(curve.start, 0))
     if found != dimension:
         raise ValueError(f"the curve has {found} coordinates: {dimension} are wanted here")
 
@@ -364,9 +355,8 @@ def _require_rulings(curve):
     """ValueError unless `curve` is a space curve whose curvature never vanishes."""
     _require_dimension(curve, 3)
     t = np.linspace(curve.start, curve.stop, 1025)
-    b = np.cross(curve.position(t, 1), curve.position(t, 2))
-    curvature = _norm(b) / _norm(curve.position(t, 1)) ** 3
-    good = curvature * curve.length > 1e-9
+    r1, b = curve.position(t, 1), np.cross(curve.position(t, 1), curve.position(t, 2))
+    good = norm(b, axis=-1) * curve.length > 1e-9 * norm(r1, axis=-1) ** 3
     good[1:] &= np.sum(b[1:] * b[:-1], axis=-1) > 0
     if not good.all():
         s = curve.integral(t[np.argmin(good)])

@@ -25,8 +25,7 @@ class Net(NamedTuple):
 
     V        (m (rows + 1), 3), vertex i (rows + 1) + j is the i-th of ring j
     Q        (m rows, 4), closed around the axis, labelled as in `mesh`
-    families `mesh.Families` of point arrays (k, 3): u parallels (closed), v loxodromes,
-             d1 and d2 the diagonals, loxodromes too
+    families point arrays (k, 3): u parallels (closed), v, d1 and d2 loxodromes
     rows, t  number of rows of quads; the meridian parameters of the rings (rows + 1,)
     message  how many rows there are, and why no more
     theta, theta0  the angles the net was made for, radians
@@ -42,14 +41,11 @@ class Net(NamedTuple):
     theta0: float
 
 
-def loxodrome(
-    profile: Profile, theta0: float, angle: float = 0.0, samples: int = 201
-) -> np.ndarray:
+def loxodrome(profile: Profile, theta0: float, angle: float = 0, samples: int = 201) -> np.ndarray:
     """Points (samples, 3) of the loxodrome that meets every parallel at theta0.
 
-    It starts at profile.start and the given angle around the axis (radians) and ends at
-    profile.stop: alpha = angle + cot theta0 * w, with w = int ds / radius the Mercator
-    coordinate; the points are evenly spaced in w.  ValueError for angles outside (0, pi).
+    From profile.start at the given angle around the axis (radians) to profile.stop: alpha =
+    angle + cot theta0 * w, evenly spaced in the Mercator coordinate w = int ds / radius.
 
     Paper: Eq. (15).
     """
@@ -73,15 +69,15 @@ def web(
     """A web of (theta, theta0)-quads on a surface of revolution, as `Net`.
 
     theta, theta0: radians in (0, pi); m >= 3 quads around the axis; n rows from profile.start
-    upwards, or as many as fit (n = None).  Fewer rows than n are built when no more fit:
-    `message` says so.  ValueError when not even one fits.
+    upwards, or as many as fit; `message` says when they are fewer.  ValueError when not even one
+    fits.
 
     method "exact"   straight-edged quads with the angles asked for, to round-off
            "smooth"  points of the smooth web, in closed form; angles off by O(1 / m^2)
            "paper"   the published algorithm, on the smooth loxodromes, with its own equation
                      for the next parallel, equation = "lam"; or the better "mu"
 
-    Paper: Alg. 1, Eq. (16), App. A.3 (beyond the paper: B4, B5).
+    Paper: Alg. 1, Eq. (16), App. A.3, B4, B5.
     """
     check_profile(profile)
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
@@ -179,10 +175,8 @@ def residual(
     Paper: Eq. (16), Alg. 1, App. A.3.
     """
     if equation == "exact":
-        _, _, off = _exact_ring(profile, theta, theta0, m)
-    else:
-        _, _, off = _paper_ring(profile, theta, theta0, m, equation)
-    return off(t0, t)
+        return _exact_ring(profile, theta, theta0, m)[2](t0, t)
+    return _paper_ring(profile, theta, theta0, m, equation)[2](t0, t)
 
 
 def _squares(profile, m, t0, t, turn):
@@ -207,7 +201,6 @@ def _exact_ring(profile, theta, theta0, m):
     """
     mu, half = ratios(theta, theta0)[1], np.pi / m
     psi = np.arctan(np.cos(theta0) / mu * np.tan(half))  # half the turn for equal radii
-    smooth = 2 * half * np.sin(theta0) / mu
     little = (profile.stop - profile.start) * 1e-5
 
     def turn(t0, t):  # for which the medial lines meet at theta0; NaN if none does
@@ -222,8 +215,12 @@ def _exact_ring(profile, theta, theta0, m):
     def following(t0):
         ends, radius = np.array([t0, min(t0 + little, profile.stop)]), profile.radius(t0)
         moved = np.hypot(*(np.ptp(f(ends)) for f in (profile.radius, profile.height)))
-        step = smooth * radius * np.ptp(ends) / max(moved, 1e-300)
-        t = _first_root(partial(off, t0), t0, step, profile.stop)
+        smooth = 2 * half * np.sin(theta0) / mu * radius * np.ptp(ends) / max(moved, 1e-300)
+        low, length, t = t0, 2 * smooth, None
+        while t is None and low < profile.stop:
+            high = min(low + length, profile.stop)
+            t = _first_root(partial(off, t0), low, high)
+            low, length = high, 2 * length
         if t is None:
             fits = off(t0, profile.stop) < FITS * (2 * radius * np.sin(half)) ** 2
             return (profile.stop, None) if fits else (None, _ended(profile))
@@ -234,41 +231,24 @@ def _exact_ring(profile, theta, theta0, m):
     return following, turn, off
 
 
-def _first_root(function, low, step, stop):
-    """The first t in (low, stop] where the function, positive at low, vanishes; or None.
-
-    NaN when the function turns into NaN before.  Scanned in stretches that double in length,
-    2 * step at first.
-    """
-    length = 2 * step
-    while low < stop:
-        high = min(low + length, stop)
-        bracket = _first_bracket(function, low, high, 3)
-        if bracket is not None:
-            return bracket[1] if np.isnan(bracket[1]) else _root(function, *bracket)
-        low, length = high, 2 * length
-    return None
-
-
-def _first_bracket(function, low, high, depth):
-    """(a, b) around the first root, None without one, (a, nan) where the function ends."""
+def _first_root(function, low, high, depth=3):
+    """The first root in (low, high] of a function, positive at low; None, or NaN if it ends."""
     t = np.linspace(low, high, 33)
     value = function(t)
     out = np.flatnonzero(~(value > 0))
     first = out[0] if out.size else len(t)
     if first == 0:  # too thin for floating point
-        return low, np.nan
+        return np.nan
     inner = value[1:-1]
     dips = 1 + np.flatnonzero((inner < value[:-2]) & (inner <= value[2:]))
     for k in dips[dips < first] if depth else []:  # two roots may hide between two samples
-        if (bracket := _first_bracket(function, t[k - 1], t[k + 1], depth - 1)) is not None:
-            return bracket
+        if (found := _first_root(function, t[k - 1], t[k + 1], depth - 1)) is not None:
+            return found
     if first == len(t):
         return None
     if np.isnan(value[first]):
-        zoom = t[first - 1], t[first], depth - 1
-        return _first_bracket(function, *zoom) if depth else (low, np.nan)
-    return t[first - 1], t[first]
+        return _first_root(function, t[first - 1], t[first], depth - 1) if depth else np.nan
+    return _root(function, t[first - 1], t[first])
 
 
 def _root(function, low, high):
@@ -319,20 +299,16 @@ def _paper_ring(profile, theta, theta0, m, equation):
 
 def _check_not_vacuous(theta, theta0, equation):
     lam, mu = ratios(theta, theta0)
-    if equation == "lam" and min(abs(np.log(lam)), abs(np.log(mu))) < 1e-9:
-        empty = (
-            "theta0 = 90 degrees: lam = 1, and |A-D| = lam |B-C| holds on every parallel, so it "
-        )
-        double = (
-            "theta = 90 degrees: |A-D| = lam |B-C| has a double root, where no sign changes and "
-        )
-        why = empty + "finds none" if abs(np.log(lam)) < 1e-9 else double + "no solver is safe"
-        raise ValueError(f'{why}; use equation = "mu" or method = "exact"')
+    use = 'use equation = "mu" or method = "exact"'
+    if equation == "lam" and abs(np.log(lam)) < 1e-9:
+        why = "theta0 = 90 degrees: lam = 1, and |A-D| = lam |B-C| holds on every parallel"
+        raise ValueError(f"{why}, so it finds none; {use}")
+    if equation == "lam" and abs(np.log(mu)) < 1e-9:
+        why = "theta = 90 degrees: |A-D| = lam |B-C| has a double root, where no sign changes"
+        raise ValueError(f"{why} and no solver is safe; {use}")
 
 
-def subnet(
-    net: Net, first: str, second: str, mirror: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
+def subnet(net: Net, first: str, second: str, mirror: bool = False) -> tuple:
     """(V, Q): quads whose edges run along two of the four families of a web.
 
     first, second: two of "u", "v", "d1", "d2"; the quads' u-edges follow `first`, their
@@ -340,7 +316,7 @@ def subnet(
     mirror=True reflects the net in the meridian plane y = 0: theta stays and theta0 becomes
     its supplement.  V keeps the vertices of the net, used or not.
 
-    Paper: Fig. 11 (other nets from the web).
+    Paper: Fig. 11.
     """
     if first == second or not {first, second} <= set(AROUND):
         raise ValueError(f"{first!r}, {second!r}: two of u, v, d1, d2 are wanted")
@@ -377,13 +353,12 @@ def closings(
 ) -> list[Closing]:
     """The closed torus webs nearest to (theta, theta0): a list of `Closing`, nearest first.
 
-    major > minor > 0: the radii; m and n go up to `limit`; at most `count` are listed, nearest
-    by the larger deviation of the two angles, of equals that with the smaller m.  The smooth
-    web with m quads around and n rows closes with a shift of k quads exactly when X_v / X_u =
-    (k + i m W / (2 pi)) / n, where W = 2 pi minor / sqrt(major^2 - minor^2) is the period of
-    the Mercator coordinate.
+    m and n go up to `limit`; at most `count` are listed, nearest by the larger deviation of
+    the two angles, of equals that with the smaller m.  The smooth web closes with a shift of k
+    quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where W = 2 pi minor /
+    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.
 
-    Paper: Sec. 5.3 (beyond the paper: B4).
+    Paper: B4.
     """
     wide = _torus_width(major, minor)
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
@@ -412,7 +387,7 @@ def torus_web(major: float, minor: float, m: int, n: int, shift: int) -> Net:
     around the axis.  All quads have the same two angles, net.theta and net.theta0, near those
     of the smooth web (see `closings`).  ValueError when no closed web is found.
 
-    Paper: Sec. 5.3 (beyond the paper: B4).
+    Paper: B4.
     """
     wide = _torus_width(major, minor)
     m, n = check_whole("m", m, 3), check_whole("n", n, 3)
