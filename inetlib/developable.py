@@ -245,8 +245,8 @@ def _feet(curve, x, y):
         k = np.clip(at, 0, KNOTS - 1)
         reached = (s[k] + y * cot[k] - x) * -way <= slack
         turned = (cot[k] + (x - s[k]) * rate[k]) * cot[k] <= 0
-        found = np.select([k != at, reached, turned], [BEYOND, REACHED, BEHIND], WALKING)
-        state = np.where(state == WALKING, found, state)
+        found = np.where(reached, REACHED, np.where(turned, BEHIND, WALKING))
+        state = np.where(state == WALKING, np.where(k == at, found, BEYOND), state)
         at = at + way * (state == WALKING)
     hit, before = (knots[np.clip(i, 0, KNOTS - 1)] for i in (at, at - way))
     before = np.where(way > 0, np.maximum(before, start), np.minimum(before, start))
