@@ -188,11 +188,6 @@ def test_mercator_is_the_closed_form(profile, closed):
     np.testing.assert_array_equal(t_of_w(np.array([-1.0, 99.0])), [profile.start, profile.stop])
 
 
-def test_a_torus_has_the_period_of_the_closed_form():
-    w_of_t, _ = surfaces.mercator(surfaces.torus_profile(2.0, 0.8))
-    assert w_of_t(np.pi) == pytest.approx(2 * np.pi * 0.8 / ROOT, rel=1e-11)
-
-
 def test_mercator_of_a_spline_is_the_quadrature_span_by_span():
     rng = np.random.default_rng(5)
     profile = surfaces.spline_profile(np.stack([rng.uniform(0.6, 1.4, 7), np.arange(7.0)], axis=1))
