@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import root
 
 from .conformal import unit
-from .mesh import check_counts
-from .parallelogram import check_angle, library, ratios, rho
+from .parallelogram import check_angle, check_whole, library, ratios, rho
 
 KNOTS = 2049  # on a curve, where the edge of regression is looked for
 SLACK = 1e-12  # of the length of a curve: rounding, where the first and last rulings tie
@@ -301,7 +300,7 @@ def rolled_grid(
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")
     if not (np.isfinite(edge) and edge > 0) or abs(edge * curvature) >= np.pi:
         raise ValueError(f"edge = {edge}: it must be positive and shorter than half a turn")
-    m, n = check_counts(m, n)
+    m, n = check_whole("m", m), check_whole("n", n)
     u, half = edge * unit(direction), curvature / 2
 
     def square(a, b=0):  # of the chord along a, in the middle of two that are b apart
@@ -355,7 +354,8 @@ def _require_rulings(curve):
     """ValueError unless `curve` is a space curve whose curvature never vanishes."""
     _require_dimension(curve, 3)
     t = np.linspace(curve.start, curve.stop, 1025)
-    r1, b = curve.position(t, 1), np.cross(curve.position(t, 1), curve.position(t, 2))
+    r1, r2 = curve.position(t, 1), curve.position(t, 2)
+    b = np.cross(r1, r2)
     good = norm(b, axis=-1) * curve.length > 1e-9 * norm(r1, axis=-1) ** 3
     good[1:] &= np.sum(b[1:] * b[:-1], axis=-1) > 0
     if not good.all():
