@@ -341,6 +341,12 @@ def is_labelled(Q):
     return bool(np.all((inner - twin[inner]) % 2 == 0))
 
 
+def require_labels(Q):
+    """ValueError unless the faces agree on u and v."""
+    if not is_labelled(Q):
+        raise ValueError("the faces do not agree on u and v: call mesh.label first")
+
+
 def label(Q):
     """The same faces, oriented alike and labelled alike; each component keeps its first face.
 

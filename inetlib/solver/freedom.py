@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import mesh
-from . import residuals as constraints
-from . import sparse
+from . import residuals, sparse
 
 LARGEST = 1200  # faces, of a dense singular value decomposition
 
@@ -39,7 +38,7 @@ def jacobian(V, Q):
     Paper: Sec. 6.1 (beyond the paper: B8).
     """
     V, Q = mesh.check_arrays(V, Q)
-    _, blocks = constraints.log_ratios(V[Q].reshape(-1, 12))
+    _, blocks = residuals.log_ratios(V[Q].reshape(-1, 12))
     return sparse.rows(blocks, sparse.coordinates(Q), V.size)
 
 

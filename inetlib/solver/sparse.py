@@ -7,6 +7,8 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
 from threadpoolctl import ThreadpoolController
 
+from .residuals import logarithms
+
 BLAS = ThreadpoolController()
 NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
 MANY = 5000  # from here on nested dissection beats minimum degree
@@ -145,7 +147,7 @@ def _halves(points, part):
     return side
 
 
-# --- One smallest step of a large grid, by conjugate gradients and without any matrix. ---
+# --- a smallest step of a large grid: conjugate gradients without any matrix ----------------
 
 INEXACT = 1e-4  # relative residual of the conjugate gradients
 
@@ -156,23 +158,16 @@ def step(A, f):
     return transposed(A, y), count
 
 
-def equations(P, log_lam, log_mu):
-    """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the Jacobian.
+def equations(P: np.ndarray, log_lam: float, log_mu: float) -> tuple[np.ndarray, np.ndarray]:
+    """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the gradients.
 
-    The same equations as `solver.residuals.log_ratios` for the faces of a grid.
+    f (2, m, n), A (2, 2, 3, m, n) as in `residuals.logarithms`: for the faces of a grid.
 
     Paper: Eq. (11), Eq. (12).
     """
-    d1 = P[:, 1:, :-1] - P[:, :-1, 1:]
-    d2 = P[:, 1:, 1:] - P[:, :-1, :-1]
-    s1, s2, c = ((a * b).sum(axis=0) for a, b in ((d1, d1), (d2, d2), (d1, d2)))
-    p, q = s1 + s2 + 2 * c, s1 + s2 - 2 * c  # (2 m13)^2 and (2 m24)^2
-    f = np.stack([0.5 * np.log(s2 / s1) - log_lam, 0.5 * np.log(p / q) - log_mu])
-    A = np.empty((2, 2, *d1.shape))
-    A[0, 0], A[1, 0] = d1 / s1, d2 / s2
-    plus, minus = 1 / p + 1 / q, 1 / p - 1 / q
-    A[0, 1] = -minus * d1 - plus * d2
-    A[1, 1] = plus * d1 + minus * d2
+    f, A = logarithms(P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1])
+    f[0] -= log_lam
+    f[1] -= log_mu
     return f, A
 
 
