@@ -67,7 +67,7 @@ def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
         goal = aim(**wanted)
         given = problem.prepare(V, Q, goal)
         s = freedom(goal, (0.0, 0.0))
-        d, ds = run.angle_step(given, V, goal, s, {})
+        d, ds = run.angle_step(given, V, goal, s)
         residual, J, slopes = run.equations(given, V, goal, s)
         np.testing.assert_allclose(J @ d.ravel() - slopes @ ds, -residual, atol=1e-10)
         # the same by LAPACK: eliminate s by projecting on what the slopes cannot reach
@@ -83,7 +83,7 @@ def test_a_shape_step_minimises_the_linearised_energy():
     goal = aim(theta=1.4)
     given = problem.prepare(V, Q, goal, reference=surface)
     s = np.array([0.1])
-    d, ds = run.shape_step(given, V, goal, s, {})
+    d, ds = run.shape_step(given, V, goal, s)
     residual, J, slopes = run.equations(given, V, goal, s)
     A, g = problem.shape(given, V)
     close = np.repeat(given.weights.closeness, 3)

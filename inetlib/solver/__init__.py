@@ -109,9 +109,10 @@ def optimize(
     if iterations is not None:
         limit = check_whole("iterations", iterations, 0)
     shape_steps = check_whole("shape_steps", shape_steps, 0)
-    options = run.Options(via, stride, shape_steps, tolerance, limit, residual == "quadratic")
+    options = run.Options(via, stride, shape_steps, tolerance, limit)
     weights = weights or (Weights() if ours else PAPER)
-    given = prepare(V, Q, wanted, weights, reference, on_surface, fixed, mobility, polygons)
+    surface, still = (reference, on_surface), (fixed, mobility, polygons)
+    given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         if not ours:
@@ -142,7 +143,7 @@ def _result(log, ours):
     sizes = V.size + len(s), 2 * len(given.Q)
     if not ours:
         sizes = guided.size(given.Q, len(V), given.goal)
-    return Result(V, lam, mu, *found, log.history, good, message, log.seconds, sizes)
+    return Result(V, lam, mu, *found, log.history, good, message, given.seconds, sizes)
 
 
 def _message(good, stopped, flips, deviation, count):

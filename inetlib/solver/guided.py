@@ -16,7 +16,7 @@ from scipy.sparse import coo_array, csr_array, diags_array, vstack
 
 from . import residuals, sparse
 from .goal import Goal, freedom
-from .problem import Problem, shape
+from .problem import shape
 from .run import Log, Options, timed, way
 
 EPSILON = 0.001  # of the regularisation
@@ -124,23 +124,14 @@ def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]
     return np.concatenate(found), vstack(blocks, format="csr")
 
 
-def step(
-    log: Log,
-    lay: Layout,
-    goal: Goal,
-    x: np.ndarray,
-    diagonal: float,
-    with_shape: bool,
-    solve: Callable,
-) -> np.ndarray:
+def _step(given, lay, goal, x, diagonal, with_shape, solve):
     """One step of Guided Projection, the change of x: (H^T H + K^T K + eps^2) d = -gradient.
 
     x holds lengths in units of `diagonal`, the bounding box's, as the paper scales its
     meshes; with_shape: with the energies of Sec. 6.3, or without (the last two steps);
     solve: a function (A, b).
     """
-    given: Problem = log.given
-    with timed(log.seconds, "assemble"):
+    with timed(given.seconds, "assemble"):
         residual, H = hard(lay, goal, x)
         A, g = H.T @ H, H.T @ residual
         if with_shape:
@@ -153,7 +144,7 @@ def step(
         root[: given.V.size] = np.repeat(np.sqrt(given.mobility), 3)
         moving = diags_array(root)
         A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
-    with timed(log.seconds, "solve"):
+    with timed(given.seconds, "solve"):
         return -root * solve(A.tocsc(), root * g)
 
 
@@ -174,7 +165,7 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
         if lay is None or goal.equal != lay.theta_mode:
             lay = layout(given.Q, len(V), goal.equal)
             x = start(lay, V / diagonal, given.Q)
-        d = step(log, lay, goal, x, diagonal, k < last, solve)
+        d = _step(given, lay, goal, x, diagonal, k < last, solve)
         x = x + d
         if not np.isfinite(x).all():
             return

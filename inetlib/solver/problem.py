@@ -35,7 +35,8 @@ class Problem(NamedTuple):
     """A checked problem: the arguments of `prepare`, weights and mobility as arrays (n,).
 
     boundary: vertices on it; fair: the matrix of fairness; neighbours: of the faces; edge:
-    the mean length of an edge; the factors solve the linear systems of the kinds of steps.
+    the mean length of an edge; the factors solve the linear systems of the kinds of steps;
+    seconds: {stage: seconds} spent so far.
     """
 
     V: np.ndarray
@@ -51,6 +52,8 @@ class Problem(NamedTuple):
     edge: float
     shape_factor: sparse.Factor
     angle_factor: sparse.Factor
+    quadratic: bool
+    seconds: dict
 
 
 def prepare(
@@ -63,12 +66,14 @@ def prepare(
     fixed: str | Sequence | np.ndarray | None = None,
     mobility: np.ndarray | None = None,
     polygons: Sequence = (),
+    quadratic: bool = False,
 ) -> Problem:
     """The `Problem` of a labelled mesh, or a ValueError that says what is wrong with the input.
 
     V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
     fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
-    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net.
+    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net;
+    quadratic: the kind of residual, see `run.equations`.
     """
     V, Q = _checked_mesh(V, Q)
     weights = _checked_weights(weights or Weights(), len(V))
@@ -82,7 +87,7 @@ def prepare(
     edge = float(np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean())
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
-    return Problem(V, Q, *kept, mesh.face_neighbours(Q), edge, *factors)
+    return Problem(V, Q, *kept, mesh.face_neighbours(Q), edge, *factors, quadratic, {})
 
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:

@@ -1,7 +1,7 @@
 """The steps of an optimisation, the runs they make, and the judge of every net on the way."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -27,14 +27,13 @@ WORSE = 3  # angle steps in a row without progress end a run
 
 
 class Options(NamedTuple):
-    """How to go: see `solver.optimize`; limit: the most steps; splu: of the formulation "paper"."""
+    """How to go, see `solver.optimize`; limit: the most steps."""
 
     via: str
     stride: float
     shape_steps: int
     tolerance: float
     limit: float
-    quadratic: bool
 
 
 class Step(NamedTuple):
@@ -103,18 +102,19 @@ def judge(
 
 
 def equations(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray, quadratic: bool = False
+    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
 ) -> tuple[np.ndarray, csr_array, np.ndarray]:
     """(residual (2 f,), Jacobian (2 f, 3 n), slopes (2 f, k)) of the angles at the net V.
 
     Zero residual: log lam and log mu of every face are those of the goal at the freedom s;
-    the Jacobian is in V and minus `slopes` in s.  quadratic: `residuals.scaled_ratios`.
+    the Jacobian is in V and minus `slopes` in s.  Of a quadratic problem they are
+    `residuals.scaled_ratios`.
 
     Paper: Eq. (11), Eq. (12).
     """
     wanted, slopes = logs(goal, s)
     x = V[problem.Q].reshape(-1, 12)
-    if quadratic:
+    if problem.quadratic:
         found, jacobian = residuals.scaled_ratios(x, *np.exp(wanted), residuals.sizes(x))
     else:
         found, jacobian = residuals.log_ratios(x)
@@ -124,19 +124,14 @@ def equations(
 
 
 def shape_step(
-    problem: Problem,
-    V: np.ndarray,
-    goal: Goal,
-    s: np.ndarray,
-    seconds: dict,
-    quadratic: bool = False,
+    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(change of V, change of s) of one Gauss-Newton step on all energies.
 
     All lengths are measured in mean edges, so the step does not depend on the scale.
     """
-    with timed(seconds, "assemble"):
-        residual, J, slopes = equations(problem, V, goal, s, quadratic)
+    with timed(problem.seconds, "assemble"):
+        residual, J, slopes = equations(problem, V, goal, s)
         f, G = residual * problem.edge, slopes * problem.edge
         root = np.repeat(np.sqrt(problem.mobility), 3)
         J = sparse.scaled(J, problem.edge * root)
@@ -147,9 +142,9 @@ def shape_step(
         diagonal = A.diagonal() + np.repeat(problem.weights.closeness, 3)
         A.setdiag(diagonal + REGULAR * diagonal.mean())
         right = np.column_stack([root * g + J.T @ f, J.T @ G])
-    with timed(seconds, "factor"):
+    with timed(problem.seconds, "factor"):
         solve = problem.shape_factor(A)
-    with timed(seconds, "solve"):
+    with timed(problem.seconds, "solve"):
         y = solve(right)
         B = right[:, 1:].T
         ds = _freedom(G.T @ G - B @ y[:, 1:], G.T @ f - B @ y[:, 0])
@@ -158,20 +153,15 @@ def shape_step(
 
 
 def angle_step(
-    problem: Problem,
-    V: np.ndarray,
-    goal: Goal,
-    s: np.ndarray,
-    seconds: dict,
-    quadratic: bool = False,
+    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(change of V, change of s): the smallest change to the linearised angles.
 
     Smallest in the sum of |d|^2 / mobility over the vertices.  On a surface (`on_surface`)
     the vertices go to their closest points and move along the tangent planes there.
     """
-    with timed(seconds, "assemble"):
-        residual, J, slopes = equations(problem, V, goal, s, quadratic)
+    with timed(problem.seconds, "assemble"):
+        residual, J, slopes = equations(problem, V, goal, s)
         free, root, lift = _metric(problem, V)
         f = residual + J @ lift
         J = free(J)
@@ -179,9 +169,9 @@ def angle_step(
         diagonal = S.diagonal()
         S.setdiag(diagonal + REGULAR * diagonal.mean())
         right = np.column_stack([f, slopes])
-    with timed(seconds, "factor"):
+    with timed(problem.seconds, "factor"):
         solve = problem.angle_factor(S)
-    with timed(seconds, "solve"):
+    with timed(problem.seconds, "solve"):
         y = solve(right)
         ds = _freedom(slopes.T @ y[:, 1:], slopes.T @ y[:, 0])
         d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
@@ -216,36 +206,27 @@ def _metric(problem, V):
 
 
 class Log:
-    """The history of an optimisation, its best net and its clock.
+    """The history of an optimisation and its best net.
 
     best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback.
     """
 
-    def __init__(self, given: Problem, tolerance: float, progress: bool, callback: Callable | None):
+    def __init__(self, given, tolerance, progress, callback):
         self.given, self.callback = given, callback
         self.tolerance = max(tolerance, _rounding(given.V, given.Q))
         self.history: list[Step] = []
-        self.seconds: dict = {}
         self.best = None
         self.stopped = False
         self.bar = tqdm(disable=not progress, unit=" steps", desc="start")
         self.record("start", given.goal, given.V, None, 0.0)
 
-    def record(
-        self,
-        kind: str,
-        goal: Goal,
-        V: np.ndarray,
-        s: np.ndarray | None,
-        size: float,
-        residual: float | None = None,
-    ) -> Step | None:
+    def record(self, kind, goal, V, s, size, residual=None):
         """Judge the net V, remember it if it is the best; the `Step`, None if V is no net.
 
         s: the freedom, that of the mean ratios if None; residual: see `judge`.
         """
         given = self.given
-        with timed(self.seconds, "check"):
+        with timed(given.seconds, "check"):
             s = nearest(given.goal, V, given.Q) if s is None else s
             step = None
             if s is not None:
@@ -322,7 +303,7 @@ def ratio(log: Log, options: Options, stride: float) -> None:
         if goal is not before:
             before, s = goal, nearest(goal, V, given.Q)
         take = shape_step if kind == "shape" else angle_step
-        d, ds = take(given, V, goal, s, log.seconds, options.quadratic)
+        d, ds = take(given, V, goal, s)
         part = next((t for t in PARTS if is_possible(goal, s + t * ds)), 0.0)
         V, s = V + part * d, s + part * ds
         size = np.linalg.norm(d, axis=1).max()
