@@ -179,9 +179,9 @@ def test_every_public_name_has_a_docstring():
         assert inspect.getdoc(value), name
 
 
-def test_every_public_function_says_the_types_of_what_it_takes_and_gives():
+def test_every_function_of_the_library_says_the_types_of_what_it_takes_and_gives():
     for name, value in public().items():
-        if inspect.isfunction(value):
+        if inspect.isfunction(value) and not name.startswith(("drawings.", "explorer.")):
             signature = inspect.signature(value)
             bare = [p.name for p in signature.parameters.values() if p.annotation is p.empty]
             assert not bare, f"{name}: {', '.join(bare)}"
@@ -205,15 +205,15 @@ def test_no_room_takes_a_private_name_of_another():
             assert not hidden, f"{here}: {there}.{name}"
 
 
-def test_no_module_and_no_function_outgrows_a_glance():
-    for name, value in public().items():
-        methods = vars(value).values() if inspect.isclass(value) else [value]
-        for function in filter(inspect.isfunction, methods):
-            if not function.__code__.co_filename.startswith(str(ROOT)):
-                continue  # made by dataclasses
-            assert len(inspect.getsource(function).splitlines()) <= 60, (name, function)
+def test_no_room_and_no_function_outgrows_a_glance():
     for path in (ROOT / "inetlib").rglob("*.py"):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= 600, path
+        text = path.read_text(encoding="utf-8")
+        assert len(text.splitlines()) <= 600, path
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                body = node.body[1:] if ast.get_docstring(node) else node.body
+                lines = body[-1].end_lineno - body[0].lineno + 1 if body else 0
+                assert lines <= 50, (path.name, node.name, lines)
 
 
 def test_the_library_draws_without_opengl():

@@ -62,8 +62,8 @@ def optimize(
         f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
     )
     ratios = (float(x) for x in np.exp(logs(wanted, [])[0]))
-    sizes = V.size, 2 * m * n
-    return Result(V, *ratios, *wanted.values, history, good, message, seconds, sizes)
+    told = history, good, message, seconds, (V.size, 2 * m * n)
+    return Result._make([V, *ratios, *wanted.values, *told])
 
 
 def _checked(X):

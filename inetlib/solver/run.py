@@ -94,8 +94,8 @@ def judge(
         flips = len(measure.flipped(V, Q, neighbours))
     except ValueError:
         return None
-    spread = [float(f(x)) for x in off for f in (np.max, np.mean)]
-    return Step(*step, float(residual), *spread, float(size), flips)
+    spread = (float(f(x)) for x in off for f in (np.max, np.mean))
+    return Step._make([*step, float(residual), *spread, float(size), flips])
 
 
 # --- steps ------------------------------------------------------------------------------
@@ -115,7 +115,8 @@ def equations(
     wanted, slopes = logs(goal, s)
     x = V[problem.Q].reshape(-1, 12)
     if problem.quadratic:
-        found, jacobian = residuals.scaled_ratios(x, *np.exp(wanted), residuals.sizes(x))
+        lam, mu = np.exp(wanted)
+        found, jacobian = residuals.scaled_ratios(x, lam, mu, residuals.sizes(x))
     else:
         found, jacobian = residuals.log_ratios(x)
         found = found - wanted
