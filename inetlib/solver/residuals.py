@@ -33,18 +33,21 @@ def _by_corners(gradients, rows):
 # --- the reduced formulation ------------------------------------------------------------
 
 
-def logarithms(d1: np.ndarray, d2: np.ndarray) -> Local:
-    """log lam and log mu of diagonals d1, d2 (3, ...): (2, ...), and their gradients.
+def logarithms(d1: np.ndarray, d2: np.ndarray, p: np.ndarray, q: np.ndarray) -> Local:
+    """log |d2| / |d1| and log |p| / |q|, (2, ...), and their gradients (2, 2, 3, ...).
 
-    The gradients (2, 2, 3, ...) are those in -d1 and d2 (first axis) of lam and mu (second).
+    d1, d2, p = d1 + d2 = 2 m13, q = d2 - d1 = 2 m24: (3, ...).  The gradients are those in
+    -d1 and d2 (first axis) of log lam and log mu (second).
 
     Paper: Eq. (11), Eq. (12).
     """
-    p, q = d1 + d2, d2 - d1  # 2 m13 and 2 m24
-    s1, s2, sp, sq = ((a * a).sum(axis=0) for a in (d1, d2, p, q))
+    s1, s2, sp, sq = (np.einsum("x...,x...->...", a, a) for a in (d1, d2, p, q))
     found = 0.5 * np.log(np.stack([s2 / s1, sp / sq]))
+    gradients = np.empty((2, 2, *d1.shape))
+    gradients[0, 0], gradients[1, 0] = d1 / s1, d2 / s2
     p, q = p / sp, q / sq
-    return found, np.stack([[d1 / s1, -p - q], [d2 / s2, p - q]])
+    gradients[0, 1], gradients[1, 1] = -p - q, p - q
+    return found, gradients
 
 
 def log_ratios(x: np.ndarray) -> Local:
@@ -54,8 +57,7 @@ def log_ratios(x: np.ndarray) -> Local:
 
     Paper: Eq. (11), Eq. (12).
     """
-    v1, v2, v3, v4 = np.ascontiguousarray(x.T).reshape(4, 3, -1)
-    found, (one, two) = logarithms(v3 - v1, v4 - v2)
+    found, (one, two) = logarithms(*np.moveaxis(_vectors(x, [0, 1, 2, 3]), 2, 1))
     jacobian = np.stack([one, -two, -one, two], axis=1)  # (ratio, corner, xyz, face)
     return found.T, np.moveaxis(jacobian, 3, 0).reshape(-1, 2, 12)
 

@@ -164,7 +164,8 @@ def equations(P: np.ndarray, log_lam: float, log_mu: float) -> tuple[np.ndarray,
 
     Paper: Eq. (11), Eq. (12).
     """
-    f, A = logarithms(P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1])
+    d1, d2 = P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1]
+    f, A = logarithms(d1, d2, d1 + d2, d2 - d1)
     f[0] -= log_lam
     f[1] -= log_mu
     return f, A
