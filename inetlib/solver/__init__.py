@@ -99,8 +99,9 @@ def optimize(
     """
     wanted = aim(theta, theta0, lam, mu, equal)
     ours = formulation == "ratio"
-    choices = ("log", "quadratic"), ("ratio", "paper", "paper, splu"), ("mean", "jump", *run.STARTS)
-    _check_choices({"residual": residual, "formulation": formulation, "via": via}, choices)
+    _check_choice("residual", residual, ("log", "quadratic"))
+    _check_choice("formulation", formulation, ("ratio", "paper", "paper, splu"))
+    _check_choice("via", via, ("mean", "jump", *run.STARTS))
     if not (stride > 0 and tolerance > 0):
         raise ValueError(f"stride = {stride}, tolerance = {tolerance}: positive radians are wanted")
     if on_surface and not ours:
@@ -109,28 +110,25 @@ def optimize(
     if iterations is not None:
         limit = check_whole("iterations", iterations, 0)
     shape_steps = check_whole("shape_steps", shape_steps, 0)
-    options = run.Options(via, stride, shape_steps, tolerance, limit)
+    options = run.Options(via, stride, shape_steps, limit)
     weights = weights or (Weights() if ours else PAPER)
     surface, still = (reference, on_surface), (fixed, mobility, polygons)
     given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        if not ours:
+        if ours:
+            run.ratio(log, options)
+        else:
             guided.run(log, options, spsolve if formulation == "paper" else None)
-        for factor in (run.STRIDES[:1] if via == "jump" else run.STRIDES) if ours else ():
-            run.ratio(log, options, stride * factor)
-            if log.done or len(log.history) > limit:
-                break
     result = _result(log, ours)
     if strict and not result.converged:
         raise NotConverged(result)
     return result
 
 
-def _check_choices(given, choices):
-    for (name, value), allowed in zip(given.items(), choices, strict=True):
-        if value not in allowed:
-            raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
+def _check_choice(name, value, allowed):
+    if value not in allowed:
+        raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
 
 
 def _result(log, ours):

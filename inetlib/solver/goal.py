@@ -65,12 +65,13 @@ def aim(
 
 
 def _equal(known):
-    angles = [x for name, x in known.items() if name.startswith("theta")]
-    ratios = [x for name, x in known.items() if not name.startswith("theta")]
-    if (angles and ratios) or np.ptp(angles or ratios or [0.0]) > ALIKE:
+    """The goal theta = theta0, whatever it is or as given."""
+    angles = [
+        x if name.startswith("theta") else float(parallelogram.angles(x, x)[0])
+        for name, x in known.items()
+    ]
+    if np.ptp(angles or [0.0]) > ALIKE:
         raise ValueError("with equal=True one angle or one ratio is wanted, and no other value")
-    if ratios:
-        angles = [float(parallelogram.angles(ratios[0], ratios[0])[0])]
     return Goal("angles", (angles[0], angles[0]), True) if angles else Goal("equal", (), True)
 
 
@@ -130,14 +131,6 @@ def freedom(goal: Goal, near: Sequence[float]) -> np.ndarray:
     values = {"angles": [], "free": [log_lam, log_mu], "equal": [(log_lam + log_mu) / 2]}
     one = log_lam if goal.kind in ("theta", "mu") else log_mu
     return np.array(values.get(goal.kind, [one]), dtype=float)
-
-
-def is_possible(goal: Goal, s: Sequence[float]) -> bool:
-    """Whether the ratios at the freedom s are those of a parallelogram.
-
-    Paper: Eq. (4).
-    """
-    return bool(parallelogram.is_admissible(*np.exp(logs(goal, s)[0])))
 
 
 def _possible(goal, log_lam, log_mu):

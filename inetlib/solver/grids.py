@@ -151,7 +151,10 @@ def _judge(size, goal, seconds):
 
     def measured(P, way=0.0):
         with timed(seconds, "check"):
-            return judge(("angle", goal), _vertices(P), Q, neighbours, goal, [], way)
+            try:
+                return judge(("angle", goal), _vertices(P), Q, neighbours, goal, [], way)
+            except ValueError:  # a face has collapsed, or a coordinate is not finite
+                return None
 
     return measured
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array, vstack
 
+from ..parallelogram import ratios
 from . import residuals, sparse
 from .goal import Goal, freedom
 from .problem import shape
@@ -87,8 +88,8 @@ def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple
     if lay.theta_mode:
         found.append((residuals.theta_quad, lay.corners, ()))
         if goal.values:
-            ratio = residuals.theta_ratio(goal.values[0])
-            found.append((residuals.given, index("c1")[:1], (ratio**2,)))
+            lam, _ = ratios(goal.values[0], goal.values[0])
+            found.append((residuals.given, index("c1")[:1], (lam**2,)))
         return found
     found += [
         (residuals.square_root, index("lam", "c1"), ()),
@@ -110,8 +111,7 @@ def size(Q: np.ndarray, count: int, goal: Goal) -> tuple[int, int]:
     Paper: Table 1.
     """
     lay = layout(Q, count, goal.equal)
-    x = np.ones(lay.columns)
-    return lay.columns, sum(f(x[index], *more)[0].size for f, index, more in equations(lay, goal))
+    return lay.columns, hard(lay, goal, np.ones(lay.columns))[0].size
 
 
 def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]:

@@ -98,12 +98,12 @@ def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     if problem.reference is None:
         return A, g
     weights, at = problem.weights, np.arange(len(V))
-    near = residuals.approximation(V, *problem.reference.closest(V))
+    near = residuals.distances(V, *problem.reference.closest(V))
     terms = [(at, weights.approximation, near)]
     if weights.boundary.any() and problem.reference.has_boundary and problem.boundary.size:
         at = problem.boundary
         feet, _, e2, e3 = problem.reference.boundary(V[at])
-        terms.append((at, weights.boundary[at], residuals.gliding(V[at], feet, e2, e3)))
+        terms.append((at, weights.boundary[at], residuals.distances(V[at], feet, e2, e3)))
     for at, weight, (residual, jacobian) in terms:
         J = sparse.rows(jacobian, sparse.coordinates(at[:, None]), V.size)
         W = diags_array(np.repeat(weight, residual.shape[1]))
@@ -187,6 +187,5 @@ def _check_distance(V, reference):
 
 def _fairness(triples, weights, count):
     """The matrix of sum w |2 v - left - right|^2, (3 n, 3 n)."""
-    _, jacobian = residuals.fairness(np.zeros((len(triples), 9)))
-    J = sparse.rows(jacobian[:, :1, ::3], triples, count)
+    J = sparse.rows(np.tile([[[-1.0, 2.0, -1.0]]], (len(triples), 1, 1)), triples, count)
     return kron(J.T @ (J * weights[triples[:, 1]][:, None]), np.eye(3), format="csr")

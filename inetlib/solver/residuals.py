@@ -62,17 +62,20 @@ def log_ratios(x: np.ndarray) -> Local:
     return found.T, np.moveaxis(jacobian, 3, 0).reshape(-1, 2, 12)
 
 
-def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray) -> Local:
+def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None = None) -> Local:
     """(d2^2 - lam^2 d1^2) / (2 lam size1) and the same for m13, m24, mu and size2.
 
-    x: (f, 12); sizes: (f, 2), fixed positive numbers, best |d1| |d2| and |m13| |m24| at the
-    present net.  Then the derivatives are those of `log_ratios` at a solution, while the
-    residual stays a polynomial and does not explode where an edge collapses.
+    x: (f, 12); sizes (f, 2) are numbers without derivatives, |d1| |d2| and |m13| |m24| if
+    None.  Then the derivatives are those of `log_ratios` at a solution, while the residual
+    stays a polynomial and does not explode where an edge collapses.
 
-    Paper: Eq. (11), Eq. (12) (squared and scaled).
+    Paper: Eq. (11), Eq. (12).
     """
     d1, d2, p, q = vectors = _vectors(x, [0, 1, 2, 3])
     vectors[2:] /= 2
+    if sizes is None:
+        lengths = np.linalg.norm(vectors, axis=2)
+        sizes = np.stack([lengths[0] * lengths[1], lengths[2] * lengths[3]], axis=1)
     scale = 2 * np.array([lam, mu]) * sizes
     residual = np.stack(
         [_dot(d2, d2) - lam**2 * _dot(d1, d1), _dot(p, p) - mu**2 * _dot(q, q)], axis=1
@@ -80,12 +83,6 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray) -> Lo
     one = _by_corners(np.stack([-2 * lam**2 * d1, 2 * d2]), [0, 1])
     two = _by_corners(np.stack([p, -(mu**2) * q]), [2, 3])
     return residual / scale, np.stack([one, two], axis=1) / scale[..., None]
-
-
-def sizes(x: np.ndarray) -> np.ndarray:
-    """(|d1| |d2|, |m13| |m24|) of the faces, (f, 2): the scale of `scaled_ratios`; x: (f, 12)."""
-    d1, d2, p, q = np.linalg.norm(_vectors(x, [0, 1, 2, 3]), axis=2)
-    return np.stack([d1 * d2, p * q / 4], axis=1)
 
 
 # --- the paper's formulation ------------------------------------------------------------
@@ -167,29 +164,10 @@ def theta_quad(x: np.ndarray) -> Local:
     return residual[:, None], gradient[:, None]
 
 
-def theta_ratio(theta: float) -> float:
-    """lam = mu of a theta-quad: cos theta + sqrt(1 + cos^2 theta).
-
-    Paper: Eq. (8), Eq. (22).
-    """
-    return np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
-
-
 # --- shape ------------------------------------------------------------------------------
 
 
-def fairness(x: np.ndarray) -> Local:
-    """2 v - left - right of three neighbours (left, v, right) of a polyline; x: (k, 9)."""
-    jacobian = np.kron(np.array([-1.0, 2.0, -1.0]), np.eye(3))
-    return x @ jacobian.T, np.broadcast_to(jacobian, (len(x), 3, 9))
-
-
-def approximation(x: np.ndarray, feet: np.ndarray, normals: np.ndarray) -> Local:
-    """(v - p) . n, the distance from the tangent plane at the closest point; all (k, 3)."""
-    return _dot(x - feet, normals)[:, None], normals[:, None]
-
-
-def gliding(x: np.ndarray, feet: np.ndarray, e2: np.ndarray, e3: np.ndarray) -> Local:
-    """((v - p) . e2, (v - p) . e3): the distance from the tangent of the boundary; all (k, 3)."""
-    frame = np.stack([e2, e3], axis=1)
+def distances(x: np.ndarray, feet: np.ndarray, *normals: np.ndarray) -> Local:
+    """(v - p) . n for each of the normals: the distances of points from planes; all (k, 3)."""
+    frame = np.stack(normals, axis=1)
     return np.einsum("kqx,kx->kq", frame, x - feet), frame

@@ -1,7 +1,7 @@
 """The steps of an optimisation, the runs they make, and the judge of every net on the way."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -10,8 +10,9 @@ from scipy.sparse import bsr_array, csr_array, diags_array
 from tqdm import tqdm
 
 from .. import measure
+from ..parallelogram import is_admissible
 from . import residuals, sparse
-from .goal import Goal, aim, angles, freedom, is_possible, logs, towards
+from .goal import Goal, aim, angles, freedom, logs, towards
 from .problem import Problem, shape
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
@@ -32,7 +33,6 @@ class Options(NamedTuple):
     via: str
     stride: float
     shape_steps: int
-    tolerance: float
     limit: float
 
 
@@ -77,24 +77,21 @@ def judge(
     Q: np.ndarray,
     neighbours: np.ndarray,
     wanted: Goal,
-    s: np.ndarray,
+    s: Sequence[float],
     size: float,
     residual: float | None = None,
-) -> Step | None:
+) -> Step:
     """What came of a step (kind, goal): the net V, Q measured against the wanted goal at s.
 
-    None if V is no net: a face has collapsed, or a coordinate or an angle is none.
-    residual: that of the two logarithms if None.
+    residual: that of the two logarithms if None.  ValueError where V is no net: a face has
+    collapsed, a coordinate is not finite, the ratios are those of no parallelogram.
     """
-    try:
-        off = measure.deviations(V, Q, *angles(wanted, s))
-        if residual is None:
-            found = np.log(np.stack(measure.ratios(V, Q)))
-            residual = np.sum((found - logs(wanted, s)[0][:, None]) ** 2)
-        flips = len(measure.flipped(V, Q, neighbours))
-    except ValueError:
-        return None
+    off = measure.deviations(V, Q, *angles(wanted, s))
+    if residual is None:
+        found = np.log(np.stack(measure.ratios(V, Q)))
+        residual = np.sum((found - logs(wanted, s)[0][:, None]) ** 2)
     spread = (float(f(x)) for x in off for f in (np.max, np.mean))
+    flips = len(measure.flipped(V, Q, neighbours))
     return Step._make([*step, float(residual), *spread, float(size), flips])
 
 
@@ -116,7 +113,7 @@ def equations(
     x = V[problem.Q].reshape(-1, 12)
     if problem.quadratic:
         lam, mu = np.exp(wanted)
-        found, jacobian = residuals.scaled_ratios(x, lam, mu, residuals.sizes(x))
+        found, jacobian = residuals.scaled_ratios(x, lam, mu)
     else:
         found, jacobian = residuals.log_ratios(x)
         found = found - wanted
@@ -227,14 +224,13 @@ class Log:
         s: the freedom, that of the mean ratios if None; residual: see `judge`.
         """
         given = self.given
+        net = V, given.Q, given.neighbours
         with timed(given.seconds, "check"):
-            s = nearest(given.goal, V, given.Q) if s is None else s
-            step = None
-            if s is not None:
-                net = V, given.Q, given.neighbours
+            try:
+                s = nearest(given.goal, V, given.Q) if s is None else s
                 step = judge((kind, goal), *net, given.goal, s, size, residual)
-        if step is None:
-            return None
+            except ValueError:
+                return None
         self.history.append(step)
         key = step.flips, step.deviation
         if self.best is None or key < self.best[0]:
@@ -258,15 +254,9 @@ def _rounding(V, Q):
     return 8 * np.spacing(np.abs(V).max()) / shortest
 
 
-def nearest(goal: Goal, V: np.ndarray, Q: np.ndarray) -> np.ndarray | None:
-    """The freedom s of the goal that fits the mean logarithms of the net's ratios.
-
-    None where a face has collapsed.
-    """
-    try:
-        return freedom(goal, [np.log(ratio).mean() for ratio in measure.ratios(V, Q)])
-    except ValueError:
-        return None
+def nearest(goal: Goal, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
+    """The freedom s of the goal that fits the mean logarithms of the net's ratios."""
+    return freedom(goal, [np.log(ratio).mean() for ratio in measure.ratios(V, Q)])
 
 
 def way(given: Problem, via: str, stride: float) -> list[Goal]:
@@ -290,11 +280,19 @@ def _means(goal, V, Q):
     return means[:2] if goal.kind == "angles" else [here[goal.kind] for _ in goal.values]
 
 
-def ratio(log: Log, options: Options, stride: float) -> None:
-    """One run of the reduced formulation, until done or WORSE angle steps gained nothing."""
+def ratio(log: Log, options: Options) -> None:
+    """Runs of the reduced formulation with smaller and smaller strides, until one succeeds."""
+    for factor in STRIDES[:1] if options.via == "jump" else STRIDES:
+        _ratio(log, options._replace(stride=options.stride * factor))
+        if log.done or len(log.history) > options.limit:
+            return
+
+
+def _ratio(log, options):
+    """One run, until done or WORSE angle steps gained nothing."""
     given, final = log.given, log.given.goal
     first = "shape" if options.shape_steps else "angle"
-    plan = [(first, goal) for goal in way(given, options.via, stride)]
+    plan = [(first, goal) for goal in way(given, options.via, options.stride)]
     plan += [("shape", final)] * (options.shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
     V, before, s = given.V, None, None
     lowest, worse = np.inf, 0
@@ -305,7 +303,8 @@ def ratio(log: Log, options: Options, stride: float) -> None:
             before, s = goal, nearest(goal, V, given.Q)
         take = shape_step if kind == "shape" else angle_step
         d, ds = take(given, V, goal, s)
-        part = next((t for t in PARTS if is_possible(goal, s + t * ds)), 0.0)
+        possible = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
+        part = next(possible, 0.0)
         V, s = V + part * d, s + part * ds
         size = np.linalg.norm(d, axis=1).max()
         step = log.record(kind, goal, V, s if goal is final else None, size)
