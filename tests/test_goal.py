@@ -46,9 +46,8 @@ def test_pairs_of_an_angle_and_a_ratio():
     for kwargs in ({"lam": lam, "theta": 1.1}, {"mu": mu, "theta0": 0.8}, {"lam": lam, "mu": mu}):
         np.testing.assert_allclose(aim(**kwargs).values, (1.1, 0.8), atol=1e-12)
     assert aim(equal=True, theta=1.0) == aim(1.0, 1.0)
-    np.testing.assert_allclose(
-        aim(equal=True, lam=(1 + np.sqrt(5)) / 2).values, np.pi / 3, atol=1e-12
-    )
+    golden = aim(equal=True, lam=(1 + np.sqrt(5)) / 2)
+    np.testing.assert_allclose(golden.values, np.pi / 3, atol=1e-12)
 
 
 def test_freedom_finds_the_nearest_point_of_the_goal():

@@ -95,6 +95,11 @@ def optimize(
     all nets the one with the fewest flips, then the smallest deviation, is returned.
     `converged`: all faces have their angles, none is flipped.  Bad input is a ValueError.
 
+    >>> from inetlib import surfaces
+    >>> found = optimize(*surfaces.freeform_patch(8, 8), theta=1.2, theta0=1.3)
+    >>> found.converged, found.theta, round(found.lam, 6)
+    (True, 1.2, 1.291682)
+
     Paper: Table 1.
     """
     wanted = aim(theta, theta0, lam, mu, equal)
@@ -110,16 +115,19 @@ def optimize(
     if iterations is not None:
         limit = check_whole("iterations", iterations, 0)
     shape_steps = check_whole("shape_steps", shape_steps, 0)
-    options = run.Options(via, stride, shape_steps, limit)
     weights = weights or (Weights() if ours else PAPER)
     surface, still = (reference, on_surface), (fixed, mobility, polygons)
     given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        if ours:
-            run.ratio(log, options)
-        else:
-            guided.run(log, options, spsolve if formulation == "paper" else None)
+        for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
+            options = run.Options(via, stride * factor, shape_steps, limit)
+            if ours:
+                run.ratio(log, options)
+            else:
+                guided.run(log, options, spsolve if formulation == "paper" else None)
+            if log.done or len(log.history) > limit:
+                break
     result = _result(log, ours)
     if strict and not result.converged:
         raise NotConverged(result)

@@ -41,6 +41,9 @@ def aim(
     ValueError for numbers out of range, for more than two, and for pairs that fit no
     parallelogram or two of them.
 
+    >>> aim(lam=1, mu=1).equal, aim(theta=1.2).kind, aim(1.2, 1.3).values
+    (True, 'theta', (1.2, 1.3))
+
     Paper: Eq. (19), Eq. (20), Eq. (22).
     """
     known = {}

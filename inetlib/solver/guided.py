@@ -124,34 +124,11 @@ def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]
     return np.concatenate(found), vstack(blocks, format="csr")
 
 
-def _step(given, lay, goal, x, diagonal, with_shape, solve):
-    """One step of Guided Projection, the change of x: (H^T H + K^T K + eps^2) d = -gradient.
-
-    x holds lengths in units of `diagonal`, the bounding box's, as the paper scales its
-    meshes; with_shape: with the energies of Sec. 6.3, or without (the last two steps);
-    solve: a function (A, b).
-    """
-    with timed(given.seconds, "assemble"):
-        residual, H = hard(lay, goal, x)
-        A, g = H.T @ H, H.T @ residual
-        if with_shape:
-            count = given.V.size
-            K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
-            K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
-            A = A + coo_array((K.data, K.coords), shape=A.shape)
-            g[:count] += k / diagonal
-        root = np.ones(lay.columns)
-        root[: given.V.size] = np.repeat(np.sqrt(given.mobility), 3)
-        moving = diags_array(root)
-        A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
-    with timed(given.seconds, "solve"):
-        return -root * solve(A.tocsc(), root * g)
-
-
 def run(log: Log, options: Options, solve: Callable | None = None) -> None:
     """Guided projection: a fixed number of steps, the last two without shape energies.
 
-    solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
+    x holds lengths in units of the diagonal of the bounding box, as the paper scales its
+    meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
 
     Paper: Table 1.
     """
@@ -165,7 +142,10 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
         if lay is None or goal.equal != lay.theta_mode:
             lay = layout(given.Q, len(V), goal.equal)
             x = start(lay, V / diagonal, given.Q)
-        d = _step(given, lay, goal, x, diagonal, k < last, solve)
+        with timed(given.seconds, "assemble"):
+            A, g, root = _system(given, lay, goal, x, diagonal if k < last else None)
+        with timed(given.seconds, "solve"):
+            d = -root * solve(A, root * g)
         x = x + d
         if not np.isfinite(x).all():
             return
@@ -175,3 +155,22 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
         s = freedom(given.goal, logs(lay, x))
         if log.record("guided", goal, V, s, longest, residual) is None or log.stopped:
             return
+
+
+def _system(given, lay, goal, x, diagonal):
+    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility.
+
+    diagonal: the unit of the lengths in x, None without the energies of Sec. 6.3.
+    """
+    residual, H = hard(lay, goal, x)
+    A, g, count = H.T @ H, H.T @ residual, given.V.size
+    if diagonal:
+        K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
+        K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
+        A = A + coo_array((K.data, K.coords), shape=A.shape)
+        g[:count] += k / diagonal
+    root = np.ones(lay.columns)
+    root[:count] = np.repeat(np.sqrt(given.mobility), 3)
+    moving = diags_array(root)
+    A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
+    return A.tocsc(), g, root

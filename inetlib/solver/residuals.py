@@ -30,9 +30,6 @@ def _by_corners(gradients, rows):
     return np.einsum("vfx,vc->fcx", gradients, SIGNS[rows]).reshape(-1, 12)
 
 
-# --- the reduced formulation ------------------------------------------------------------
-
-
 def logarithms(d1: np.ndarray, d2: np.ndarray, p: np.ndarray, q: np.ndarray) -> Local:
     """log |d2| / |d1| and log |p| / |q|, (2, ...), and their gradients (2, 2, 3, ...).
 
@@ -83,9 +80,6 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None
     one = _by_corners(np.stack([-2 * lam**2 * d1, 2 * d2]), [0, 1])
     two = _by_corners(np.stack([p, -(mu**2) * q]), [2, 3])
     return residual / scale, np.stack([one, two], axis=1) / scale[..., None]
-
-
-# --- the paper's formulation ------------------------------------------------------------
 
 
 def squared_diagonals(x: np.ndarray) -> Local:
@@ -162,9 +156,6 @@ def theta_quad(x: np.ndarray) -> Local:
     residual = _dot(d2, d2) - _dot(d1, d1) - 2 * _dot(d1, d2)
     gradient = _by_corners(np.stack([-2 * (d1 + d2), 2 * (d2 - d1)]), [0, 1])
     return residual[:, None], gradient[:, None]
-
-
-# --- shape ------------------------------------------------------------------------------
 
 
 def distances(x: np.ndarray, feet: np.ndarray, *normals: np.ndarray) -> Local:

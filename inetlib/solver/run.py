@@ -95,9 +95,6 @@ def judge(
     return Step._make([*step, float(residual), *spread, float(size), flips])
 
 
-# --- steps ------------------------------------------------------------------------------
-
-
 def equations(
     problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
 ) -> tuple[np.ndarray, csr_array, np.ndarray]:
@@ -200,9 +197,6 @@ def _metric(problem, V):
     return lambda J: J @ R, R, lift
 
 
-# --- runs -------------------------------------------------------------------------------
-
-
 class Log:
     """The history of an optimisation and its best net.
 
@@ -281,15 +275,7 @@ def _means(goal, V, Q):
 
 
 def ratio(log: Log, options: Options) -> None:
-    """Runs of the reduced formulation with smaller and smaller strides, until one succeeds."""
-    for factor in STRIDES[:1] if options.via == "jump" else STRIDES:
-        _ratio(log, options._replace(stride=options.stride * factor))
-        if log.done or len(log.history) > options.limit:
-            return
-
-
-def _ratio(log, options):
-    """One run, until done or WORSE angle steps gained nothing."""
+    """One run of the reduced formulation, until done or WORSE angle steps gained nothing."""
     given, final = log.given, log.given.goal
     first = "shape" if options.shape_steps else "angle"
     plan = [(first, goal) for goal in way(given, options.via, options.stride)]

@@ -69,16 +69,15 @@ class Factor:
         self.points, self.order = points, None
 
     def __call__(self, A):
-        narrow = _banded(A) if self.order is None else None
-        if narrow:
-            return narrow
-        if self.order is None and len(self.points) >= MANY:
+        if self.order is None:
+            if narrow := _banded(A):
+                return narrow
+            if len(self.points) < MANY:
+                factors = _superlu(A.tocsc(), "MMD_AT_PLUS_A")
+                self.order = np.argsort(factors.perm_c)
+                return factors.solve
             self.order = nested_dissection(self.points, A)
-        if self.order is not None:
-            return factor(A, self.order)
-        factors = _superlu(A.tocsc(), "MMD_AT_PLUS_A")
-        self.order = np.argsort(factors.perm_c)
-        return factors.solve
+        return factor(A, self.order)
 
 
 def _superlu(A, ordering):
