@@ -6,7 +6,7 @@ import igl
 import numpy as np
 import pytest
 
-from inetlib import clean, design, examples, measure, mesh, solver
+from inetlib import design, examples, measure, mesh, repair, solver
 from inetlib.design import flatten, overlay, report
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -220,7 +220,7 @@ def test_the_u_lines_close_after_the_winding():
 def test_a_flat_ring_is_mapped_by_the_logarithm(boundary):
     V, F = examples.saddle_with_hole(20)
     V[:, 2] = 0
-    surface = clean.clean(V, F)
+    surface = repair.clean(V, F)
     flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
     radius = np.linalg.norm(V[surface.F].mean(axis=1), axis=1)
     product = flat.scale * radius  # |d log z / dz| = 1 / r
@@ -247,7 +247,7 @@ def test_the_plain_net_of_a_ring_follows_its_boundaries():
 def test_a_square_with_a_square_hole_loses_no_triangle():
     V, Q = sheet(24, 24, lambda u, v: (u, v, 0.1 * u * v))
     hole = np.abs(V[Q].mean(axis=1)[:, :2] - 0.5).max(axis=1) < 0.2
-    surface = clean.clean(V, Q[~hole])
+    surface = repair.clean(V, Q[~hole])
     assert np.isin(surface.F, surface.loops[0]).all(axis=1).sum() == 0
     halved = igl.doublearea(surface.V, surface.F).sum()
     whole = igl.doublearea(*mesh.triangles(V, Q[~hole])).sum()
@@ -262,7 +262,7 @@ def test_a_square_with_a_square_hole_loses_no_triangle():
 
 def test_a_bent_sheet_is_flattened_without_distortion():
     V, Q = sheet(30, 20, lambda u, v: (np.cos(2 * u), np.sin(2 * u), v))
-    surface = clean.clean(V, Q)
+    surface = repair.clean(V, Q)
     flat = flatten.flatten(surface.V, surface.F, surface.loops)
     assert flat.flips == 0
     assert flat.distortion.max() < 1.001
@@ -280,7 +280,7 @@ def test_the_map_of_a_spherical_cap_follows_the_stereographic_one():
         return 2 * x / s, 2 * y / s, (s - 2) / s
 
     V, Q = sheet(40, 40, point)
-    surface = clean.clean(V, Q)
+    surface = repair.clean(V, Q)
     flat = flatten.flatten(surface.V, surface.F, surface.loops)
     w = V[:, 0] / (1 - V[:, 2]) + 1j * V[:, 1] / (1 - V[:, 2])
     columns = w[:, None] ** np.arange(8)  # any other conformal map is a power series of it
@@ -302,7 +302,7 @@ def courtyard():
 
 @pytest.mark.parametrize("make", [examples.wavy_roof, l_shape, courtyard])
 def test_the_even_map_has_an_even_boundary_and_the_least_variation_of_scale(make):
-    surface = clean.clean(*make())
+    surface = repair.clean(*make())
     even, plain = (
         flatten.flatten(surface.V, surface.F, surface.loops, words) for words in ("even", "plain")
     )
@@ -328,7 +328,7 @@ def test_a_helical_ramp_of_two_turns_overlaps_when_flattened():
 
 def test_points_of_the_plane_are_lifted_linearly():
     V, F = plate()
-    surface = clean.clean(V, F)
+    surface = repair.clean(V, F)
     flat = flatten.flatten(surface.V, surface.F, surface.loops)
     domain = overlay.Domain(flat, surface.V)
     inside, lifted = domain.lift(np.append(flat.z, 100 + 0j))
@@ -369,11 +369,11 @@ def test_the_last_digits_of_a_symmetric_surface_do_not_turn_its_net(name, pair):
 
 def test_a_square_has_no_longest_direction_and_takes_that_of_two_corners():
     V, F = square()
-    flat = flatten.flatten(*clean.clean(V, F)[:3], "plain")
+    flat = flatten.flatten(*repair.clean(V, F)[:3], "plain")
     corners = flat.z[[0, 168]]  # the first corner, and the one that is farthest from it
     assert np.angle(corners[1] - corners[0]) == pytest.approx(0, abs=1e-9)
     V, F = mesh.triangles(*sheet(12, 12, lambda u, v: (2 * u, 2.05 * v, 0 * u)))
-    flat = flatten.flatten(*clean.clean(V, F)[:3], "plain")
+    flat = flatten.flatten(*repair.clean(V, F)[:3], "plain")
     assert flat.z[12] - flat.z[0] == pytest.approx(2.05, abs=1e-9)  # along the longer side
 
 
@@ -523,7 +523,7 @@ def test_examples_are_sound_and_check_their_size(make):
     V, F = make(6)
     area = igl.doublearea(V, F)
     assert area.min() > 0.05 * area.mean()
-    assert len(clean.clean(V, F).loops) == (2 if make is examples.saddle_with_hole else 1)
+    assert len(repair.clean(V, F).loops) == (2 if make is examples.saddle_with_hole else 1)
     for n in (1, 2.5):
         with pytest.raises(ValueError, match=f"n = {n}"):
             make(n)
@@ -604,7 +604,7 @@ def test_maps_of_symmetric_surfaces_do_not_hang_on_rounding(name, boundary):
     V, F = SYMMETRIC[name]()
     known = None
     for seed in range(4):
-        surface = clean.clean(noisy(V, seed), F)
+        surface = repair.clean(noisy(V, seed), F)
         flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
         known = known or flat
         np.testing.assert_array_equal(flat.F, known.F)
@@ -615,7 +615,7 @@ def test_maps_of_symmetric_surfaces_do_not_hang_on_rounding(name, boundary):
 @pytest.mark.parametrize("boundary", ["even", "plain"])
 def test_a_square_has_no_longest_direction_and_lies_on_its_first_diagonal(boundary):
     V, Q = SYMMETRIC["square"]()
-    surface = clean.clean(V, Q)
+    surface = repair.clean(V, Q)
     flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
     corners = [k for k in surface.loops[0] if np.abs(V[k, :2]).min() == 1]
     along = V[:, :2] @ -V[corners[0], :2] / np.sqrt(2)
@@ -633,6 +633,6 @@ def test_duplicate_vertices_are_merged_wherever_they_lie():
     V, F = examples.wavy_roof(12)
     soup = V[F].reshape(-1, 3)
     soup = soup + 1e-13 * np.random.default_rng(3).standard_normal(soup.shape)
-    found = clean.clean(soup, np.arange(F.size).reshape(-1, 3))
+    found = repair.clean(soup, np.arange(F.size).reshape(-1, 3))
     assert len(found.V) == len(V)
     assert len(found.loops) == 1

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import clean as cleaning
-from .. import parallelogram, reference, solver
+from .. import parallelogram, reference, repair, solver
 from ..solver.problem import Weights
 from ..solver.run import timed
 from . import flatten, overlay
@@ -75,7 +74,7 @@ def cover(
     _check(count, size, direction)
     seconds = {}
     with timed(seconds, "check"):
-        surface = cleaning.clean(V, F)
+        surface = repair.clean(V, F)
         goal = reference.mesh(surface.V, surface.F)
     with timed(seconds, "flatten"):
         flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)

@@ -49,7 +49,7 @@ class Flat(NamedTuple):
 def flatten(V, F, loops, boundary="even"):
     """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
 
-    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk, and
+    V, F, loops as from `repair.clean`.  The real axis is the longest direction of a disk, and
     runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
     map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
     overlaps itself, too.
