@@ -301,9 +301,9 @@ def test_holes_are_boundary_too():
 
 
 def test_no_boundary_is_an_error_that_says_so():
-    with pytest.raises(ValueError, match="closed surface: it has no boundary"):
+    with pytest.raises(ValueError, match="no boundary: it is closed"):
         reference.mesh(*octahedron(0)).boundary(np.zeros((1, 3)))
-    with pytest.raises(ValueError, match="a parametric reference knows no boundary"):
+    with pytest.raises(ValueError, match="or no `reference.mesh`"):
         reference.parametric(SPHERE.point, (0, TAU), (-1, 1)).boundary(np.zeros((1, 3)))
 
 
@@ -345,16 +345,16 @@ def test_bad_meshes_are_refused():
 
 def test_a_face_without_area_is_named():
     V, Q = grid(3, 1)
-    with pytest.raises(ValueError, match="face 1 has no area: the triangle"):
+    with pytest.raises(ValueError, match=r"triangle \[2, 4, 6\] near .* has no area"):
         reference.mesh(V, [[0, 2, 1], [2, 4, 6]])
     V[5] = V[3]
-    with pytest.raises(ValueError, match="face 1 has no area: its triangle"):
+    with pytest.raises(ValueError, match=r"triangle \[3, 2, 5\] near .* has no area"):
         reference.mesh(V, Q)
 
 
 def test_surfaces_that_share_only_a_vertex_are_refused():
     V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0.0]])
-    with pytest.raises(ValueError, match="faces at vertex 0 form two fans"):
+    with pytest.raises(ValueError, match="faces at vertex 0, near .*, form two fans"):
         reference.mesh(V, [[0, 1, 2], [0, 3, 4]])
 
 
