@@ -303,7 +303,7 @@ def test_holes_are_boundary_too():
 def test_no_boundary_is_an_error_that_says_so():
     with pytest.raises(ValueError, match="no boundary: it is closed"):
         reference.mesh(*octahedron(0)).boundary(np.zeros((1, 3)))
-    with pytest.raises(ValueError, match="or no `reference.mesh`"):
+    with pytest.raises(ValueError, match=r"or no `reference\.mesh`"):
         reference.parametric(SPHERE.point, (0, TAU), (-1, 1)).boundary(np.zeros((1, 3)))
 
 
@@ -354,7 +354,7 @@ def test_a_face_without_area_is_named():
 
 def test_surfaces_that_share_only_a_vertex_are_refused():
     V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0.0]])
-    with pytest.raises(ValueError, match="faces at vertex 0, near .*, form two fans"):
+    with pytest.raises(ValueError, match=r"faces at vertex 0, near .*, form two fans"):
         reference.mesh(V, [[0, 1, 2], [0, 3, 4]])
 
 
