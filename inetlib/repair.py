@@ -105,7 +105,7 @@ def merge(V: np.ndarray, F: np.ndarray, tolerance: float):
     points, place = np.unique(V[used] + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
     radius = tolerance * np.linalg.norm(np.ptp(points, axis=0))
     near = cKDTree(points).query_pairs(radius, output_type="ndarray")
-    place = _components(len(points), *near.T)[place.ravel()]
+    place = components(len(points), *near.T)[place.ravel()]
     _, first = np.unique(place, return_index=True)
     return used[first[place[corner]]].reshape(F.shape), len(used) - len(first)
 
@@ -131,7 +131,7 @@ def orient(T: np.ndarray):
     turn, loop = mesh.two_colour(len(T), one // 3, two // 3, clash)
     if loop is not None:
         raise ValueError(f"the surface is one-sided: see the loop of triangles {loop[:6]} ...")
-    piece = _components(len(T), one // 3, two // 3)
+    piece = components(len(T), one // 3, two // 3)
     turn ^= (np.bincount(piece, turn) > np.bincount(piece) / 2)[piece]
     return np.where(turn[:, None], T[:, ::-1], T), int(turn.sum())
 
@@ -164,13 +164,13 @@ def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
     """
     after = np.roll(np.arange(T.size).reshape(-1, 3), -1, axis=1).ravel()
     half = np.flatnonzero(twin >= 0)
-    return _components(T.size, half, after[twin[half]])
+    return components(T.size, half, after[twin[half]])
 
 
 def topology(T: np.ndarray) -> list:
     """The boundary loops of oriented triangles, longest first; ValueError if no disk or ring."""
     one, two = mesh.pairs(T).T // 3
-    sizes = np.sort(np.bincount(_components(len(T), one, two)))[::-1]
+    sizes = np.sort(np.bincount(components(len(T), one, two)))[::-1]
     if len(sizes) > 1:
         raise ValueError(
             f"the surface has {len(sizes)} separate pieces (of {', '.join(map(str, sizes[:4]))} "
@@ -202,7 +202,7 @@ def _without_chords(V, T, loops):
     return np.concatenate([V, V[chords].mean(axis=1)]), T
 
 
-def _components(count, one, two):
+def components(count: int, one: np.ndarray, two: np.ndarray) -> np.ndarray:
     """The number of the connected component of each of `count` nodes joined by edges one-two."""
     graph = coo_array((np.ones(len(one), dtype=np.int8), (one, two)), shape=(count, count))
     return connected_components(graph, directed=False)[1]
