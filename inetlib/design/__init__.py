@@ -68,6 +68,11 @@ def cover(
     a ring the net closes, with the nearest size and direction for which it can.  ValueError,
     one sentence, for input that cannot be covered; safe repairs are named in the report.
     Look at `report.converged`: a net that is off is returned, not raised.
+
+    >>> from inetlib import examples
+    >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
+    >>> net.report.converged, net.report.flips, round(float(np.degrees(net.report.theta.mean)), 6)
+    (True, 0, 70.0)
     """
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range

@@ -51,17 +51,12 @@ def flatten(V: np.ndarray, F: np.ndarray, loops: list, boundary: str = "even") -
     """
     if boundary not in ("even", "plain"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
-    if len(loops) == 1:
-        faces, origin, ends = F, np.arange(len(V)), _ends(V, loops[0])
-    else:
-        faces, origin, bank = _cut(F, _path(V, F, loops))
-        ends = np.flatnonzero(bank)[:2]  # any pins: only the energy is wanted
+    disk = len(loops) == 1
+    faces, origin, bank = (F, np.arange(len(V)), None) if disk else _cut(F, _path(V, F, loops))
+    ends = _ends(V, loops[0]) if disk else np.flatnonzero(bank)[:2]  # any: energy is all we want
     uv, energy = igl.lscm(V[origin], faces, np.array(ends), np.array([[0.0, 0.0], [1.0, 0.0]]))
-    energy = csr_array(energy)
-    if len(loops) == 1:
-        z, period = _disk(uv[:, 0] + 1j * uv[:, 1], energy, loops[0]), None
-    else:
-        z, period = _ring(energy, loops, origin, bank, len(V)), 1.0 + 0j
+    z, energy, period = uv[:, 0] + 1j * uv[:, 1], csr_array(energy), None if disk else 1.0 + 0j
+    z = _disk(z, energy, loops[0]) if disk else _ring(energy, loops, origin, bank, len(V))
     flat = _judged(V, F, z, faces, origin, period, ends)
     if boundary == "even":
         even = _even(V, F, loops, flat, energy)
@@ -82,25 +77,20 @@ def _ends(V, loop):
 
 def _disk(z, energy, loop):
     """The plain map of a disk, by inverse iteration from the map z."""
-    count = len(z)
+    count, before = len(z), 0
     matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
     inverse = sparse.factor(matrix)
-    z = _unit_rim(z, loop)
     for _ in range(ROUNDS):
+        z = z - z[loop].mean()
+        z /= np.linalg.norm(z[loop])
+        if np.abs(z - before).max() < STILL * np.abs(z).max():
+            break
         load = np.zeros(count, dtype=complex)
         load[loop] = z[loop]
         x = inverse(np.concatenate([load.real, load.imag]))
-        x = x[:count] + 1j * x[count:]
-        x *= np.exp(1j * np.angle(np.vdot(x[loop], z[loop])))  # on flat disks rounding turns it
-        before, z = z, _unit_rim(x, loop)
-        if np.abs(z - before).max() < STILL * np.abs(z).max():
-            break
+        before, z = z, x[:count] + 1j * x[count:]
+        z *= np.exp(1j * np.angle(np.vdot(z[loop], before[loop])))  # rounding turns flat disks
     return z
-
-
-def _unit_rim(z, loop):
-    z = z - z[loop].mean()
-    return z / np.linalg.norm(z[loop])
 
 
 def _path(V, F, loops):

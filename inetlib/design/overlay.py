@@ -50,9 +50,8 @@ class Domain:
 def cover(domain: Domain, theta, theta0, count=None, size=None, direction=0.0) -> Layer:
     """The `Layer` of about `count` quads, or of edges of mean length `size`, over a `Domain`.
 
-    direction: angle of the u-lines against the real axis of the flat surface, radians.  Over
-    a ring edge and direction are those nearest to the wanted ones that close up around it.
-    ValueError if not one whole quad fits inside.
+    direction: of the u-lines against the real axis, radians.  Over a ring both are changed as
+    little as it takes to close up around it.  ValueError if not one whole quad fits inside.
     """
     lam, mu = parallelogram.ratios(theta, theta0)
     rho, turn = parallelogram.rho(lam, mu), np.exp(1j * direction)

@@ -71,11 +71,6 @@ class Report(NamedTuple):
         """The largest deviation of theta and theta0 of any face, radians."""
         return max(self.theta.max_deviation, self.theta0.max_deviation)
 
-    @property
-    def mean_deviation(self):
-        """The deviation of both angles on average, radians."""
-        return (self.theta.mean_deviation + self.theta0.mean_deviation) / 2
-
 
 def report(
     V: np.ndarray, Q: np.ndarray, polygons=(), lam=None, mu=None, theta=None, theta0=None
