@@ -52,9 +52,6 @@ def courtyard(n=20):
     return V, Q[np.abs(V[Q].mean(axis=1)[:, :2] - 0.5).max(axis=1) > 0.2]
 
 
-# --- disks ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("make", [examples.wavy_roof, examples.hanging_shell])
 def test_own_surfaces_are_covered(make, pair):
@@ -159,9 +156,6 @@ def test_a_net_that_is_off_is_returned_and_says_so(
     assert name != "optimize" or found.max_deviation > 1e-4
 
 
-# --- rings ----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("direction", [0.0, 0.5])
 def test_a_saddle_with_a_hole_is_covered_by_a_closed_net(pair, direction):
@@ -207,9 +201,6 @@ def test_a_square_with_a_square_hole_has_no_flipped_triangle():
     net = cover(surface, (60, 60), count=600, direction=0.7)
     check_cover(net, surface, (60, 60))
     assert net.report.surface_flips == 0
-
-
-# --- the map --------------------------------------------------------------------------------
 
 
 def test_a_bent_sheet_is_flattened_without_distortion():
@@ -272,9 +263,6 @@ def test_points_of_the_plane_are_lifted_linearly():
     np.testing.assert_allclose(lifted[:-1], surface.V, atol=1e-9)
 
 
-# --- input ----------------------------------------------------------------------------------
-
-
 def test_what_was_repaired_stands_in_the_report():
     V, F = examples.wavy_roof(12)
     net = cover(soup(V, F), (60, 60), count=80)
@@ -315,9 +303,6 @@ def test_examples_are_sound_and_check_their_size(name):
     for n in (1, 2.5):
         with pytest.raises(ValueError, match=f"n = {n}"):
             make(n)
-
-
-# --- the same on every machine ----------------------------------------------------------------
 
 
 def polygon(sides):
@@ -391,9 +376,6 @@ def test_points_on_the_rim_up_to_rounding_are_inside():
     for seed in range(4):
         net = cover((noisy(V, seed), Q), (90, 90), size=0.2, direction=np.pi / 4, optimise=False)
         assert len(net.Q) == 100  # ten by ten, the outer lines lie on the sides
-
-
-# --- what is told on the way, and how a caller ends it ------------------------------------------
 
 
 CASES = {

@@ -42,9 +42,6 @@ SIDES = np.array(
 )
 
 
-# --- to cover -------------------------------------------------------------------------------
-
-
 def test_turned_faces_are_turned_back():
     V, F = ROOF
     G = F.copy()
@@ -162,9 +159,6 @@ def test_fans_are_those_of_libigl():
             assert not pinched.size
         except ValueError as error:
             assert f"vertex {pinched[0]}," in str(error)
-
-
-# --- from files -----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("words", NEVER)
