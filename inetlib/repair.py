@@ -181,8 +181,9 @@ def topology(T: np.ndarray) -> list:
     handles = (2 - len(loops) - euler) // 2
     if handles or len(loops) not in (1, 2):
         raise ValueError(
-            f"the surface has {len(loops)} boundary loops and {handles} handles: cut it into disks "
-            "(1 loop, no handle) or rings (2 loops, no handle)"
+            f"the surface {'has' if loops else 'is closed: it has'} {len(loops)} boundary loops "
+            f"and {handles} handles: cut it into disks (1 loop, no handle) or rings (2 loops, no "
+            "handle)"
         )
     return sorted(loops, key=len, reverse=True)
 

@@ -28,7 +28,13 @@ AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcom
 
 
 class Cover(NamedTuple):
-    """The net V (n, 3), Q (f, 4), labelled, and its `Report`."""
+    """The net V (n, 3), Q (f, 4), labelled, and its `Report`.
+
+    >>> from inetlib import examples
+    >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
+    >>> net.report.converged, net.report.flips, round(float(np.degrees(net.report.theta.mean)), 6)
+    (True, 0, 70.0)
+    """
 
     V: np.ndarray
     Q: np.ndarray
@@ -68,18 +74,11 @@ def cover(
     a ring the net closes, with the nearest size and direction for which it can.  ValueError,
     one sentence, for input that cannot be covered; safe repairs are named in the report.
     Look at `report.converged`: a net that is off is returned, not raised.
-
-    >>> from inetlib import examples
-    >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
-    >>> net.report.converged, net.report.flips, round(float(np.degrees(net.report.theta.mean)), 6)
-    (True, 0, 70.0)
     """
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
-    if size is None:
-        count = parallelogram.check_whole("count", count)
-    else:
-        size = parallelogram.check_positive("size", size)
+    count = parallelogram.check_whole("count", count) if size is None else count
+    size = size if size is None else parallelogram.check_positive("size", size)
     if not np.isfinite(direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
     seconds = {}
