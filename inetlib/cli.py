@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 
 from . import (
-    clean,
     design,
     examples,
     files,
@@ -27,6 +26,7 @@ from . import (
     options,
     paths,
     reference,
+    repair,
     solver,
     surfaces,
 )
@@ -199,7 +199,7 @@ def _optimize(given):
 def _explore(given):
     surface = given.surface and io.surface(given.surface)
     if surface:
-        clean.clean(surface.V, surface.F)  # refuses what cannot be covered
+        repair.clean(surface.V, surface.F)  # refuses what cannot be covered
     from .explorer import notebook
 
     try:

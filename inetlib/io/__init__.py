@@ -102,7 +102,7 @@ def surface(path, merge=True):
     path = Path(path)
     V, F = read(path)
     with _named(path):
-        V, F, repaired = repair.clean(V, F, merge)
+        V, F, repaired = repair.manifold(V, F, merge)
     if path.suffix.lower() in (".stl", ".glb"):
         repaired = ["corners of triangles at equal points were read as one vertex", *repaired]
     return Surface(V, F, repaired)
