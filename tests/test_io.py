@@ -45,7 +45,7 @@ def package(name):
 
 def need(suffix):
     """Skips where the package that the format needs is missing."""
-    for known, name in ((".vtp", "vtkmodules"), (".dxf", "ezdxf"), (".3dm", "rhino3dm")):
+    for known, name in ((".vtp", "pyvista"), (".dxf", "ezdxf"), (".3dm", "rhino3dm")):
         if suffix == known:
             package(name)
 
