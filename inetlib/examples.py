@@ -4,7 +4,6 @@ import numpy as np
 from scipy.sparse import coo_array, diags_array
 
 from . import mesh
-from .solver import sparse
 
 
 def wavy_roof(n=40):
@@ -32,6 +31,8 @@ def hanging_shell(n=30):
     The edges are springs of no length, those of the border four times as strong, all vertices
     have the same weight: equilibrium is one linear system.
     """
+    from .solver import sparse
+
     n = _at_least(n, 2)
     Q = mesh.grid_quads(n, n)
     x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1), indexing="ij")
@@ -49,6 +50,9 @@ def hanging_shell(n=30):
     solve = sparse.factor(stiffness[free][:, free])
     V[free] += np.stack([solve(column) for column in right.T.copy()], axis=1)
     return mesh.triangles(V, Q)
+
+
+SURFACES = {"roof": wavy_roof, "saddle": saddle_with_hole, "shell": hanging_shell}
 
 
 def _at_least(n, low):

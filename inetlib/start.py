@@ -19,17 +19,18 @@ ENDS = []  # functions without arguments that end what this process has started
 def main(arguments=None):
     """`cli.main` for a process of its own: the exit code, or the end by a signal: 130."""
     words = sys.argv[1:] if arguments is None else arguments
-    quiet = words[:1] in (["figures"], ["explore"])
-
-    def sentence():
-        return "inet: stopped" + ", nothing was written" * (not quiet and not files.WRITTEN)
-
-    listen(sentence)
+    listen(lambda: f"inet: {stopped(*words[:1])}")
     from .cli import main as run
 
     code = run(arguments)
     finished()
     return code
+
+
+def stopped(command="", written=0):
+    """What is said when a command is stopped; written: how many files there were before."""
+    quiet = command in ("figures", "explore") or len(files.WRITTEN) > written
+    return "stopped" + ", nothing was written" * (not quiet)
 
 
 def listen(sentence, fresh=False):

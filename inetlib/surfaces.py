@@ -8,6 +8,8 @@ freeform mesh, a start for the optimisation.
 Paper: Sec. 5, Sec. 5.2, Fig. 12.
 """
 
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -230,6 +232,15 @@ def vase_profile(start=0.0, stop=3.2):
     Paper: Fig. 11.
     """
     return Profile(lambda t: 0.72 + 0.33 * np.sin(1.9 * t + 0.25), lambda t: t + 0.0, start, stop)
+
+
+PROFILES: dict[str, Callable[[], Profile]] = {
+    "sphere": sphere_profile,
+    "torus": torus_profile,
+    "catenoid": catenoid_profile,
+    "vase": vase_profile,
+    "cone": partial(cone_profile, np.radians(30)),
+}
 
 
 def spline_profile(points):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from inetlib import cli, examples, io, mesh, options, paths, solver, surfaces
+from inetlib import cli, examples, io, loxodrome, mesh, solver, surfaces
 
 ANGLES = "--theta", "60", "--theta0", "45"
 BLUNT = "--theta", "170", "--theta0", "45"
@@ -61,21 +61,21 @@ def test_the_entry_point_runs_and_knows_its_version():
     assert done.returncode == 0 and done.stdout.startswith("inet 0.")
 
 
-@pytest.mark.parametrize("command", options.EXAMPLES)
+@pytest.mark.parametrize("command", cli.TEXTS)
 def test_every_help_text_shows_its_examples(inet, command):
     code, out, err = inet(*([command] if command else []), "--help")
     assert (code, err) == (0, "")
-    for line in options.EXAMPLES[command]:
+    for line in cli.TEXTS[command]:
         assert f"  {line}\n" in out
     assert max(len(line) for line in out.splitlines()) <= 100
 
 
 @pytest.mark.parametrize(
-    "command", [name for name in options.EXAMPLES if name not in ("explore", "figures")]
+    "command", [name for name in cli.TEXTS if name not in ("explore", "figures")]
 )
 def test_every_example_runs(inet, command):
     roof("roof.obj")
-    for line in options.EXAMPLES[command]:
+    for line in cli.TEXTS[command]:
         first, *words = shlex.split(line)
         assert first == "inet"
         code, out, err = inet(*words)
@@ -87,9 +87,9 @@ def test_every_example_runs(inet, command):
 
 def test_the_examples_of_figures_name_notebooks():
     folder = cli.ROOT / "notebooks"
-    for line in options.EXAMPLES["figures"]:
+    for line in cli.TEXTS["figures"]:
         for name in line.split()[2:]:
-            assert cli._notebooks(folder, name)
+            assert cli.notebooks(folder, name)
 
 
 @pytest.mark.parametrize("words", [[], ["nets"], ["measure"], ["web", "-o", "a.obj"]])
@@ -200,7 +200,7 @@ def test_outputs_are_checked_before_the_work(inet, monkeypatch, command, output)
     def work(*ignored, **also):
         raise AssertionError("began")
 
-    for module, name in ((io, "net"), (io, "surface"), (cli.loxodrome, "web")):
+    for module, name in ((io, "net"), (io, "surface"), (loxodrome, "web")):
         monkeypatch.setattr(module, name, work)
     Path("folder.obj").mkdir()
     Path("old.obj").write_text("precious")
@@ -238,7 +238,7 @@ def test_ctrl_c_is_one_line(inet, web, monkeypatch):
 # --- web ----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("profile", options.PROFILES)
+@pytest.mark.parametrize("profile", surfaces.PROFILES)
 def test_webs_on_the_known_profiles(inet, profile):
     words = "--profile", profile, *ANGLES, "-m", 16, "-o", "a.ply", "--json"
     code, out, err = inet("web", *words)
@@ -354,8 +354,8 @@ def test_figures_needs_a_clone_and_names_that_are_there(inet, monkeypatch, tmp_p
 
 def test_figures_are_found_by_the_notebook_that_draws_them():
     folder = cli.ROOT / "notebooks"
-    assert cli._notebooks(folder, "fig03") == ["3_3_conformal_grids"]
-    assert cli._notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
+    assert cli.notebooks(folder, "fig03") == ["3_3_conformal_grids"]
+    assert cli.notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
 
 
 # --- what users bring ---------------------------------------------------------------------
@@ -423,7 +423,7 @@ def test_a_net_around_a_hexagon_keeps_it(inet):
 # --- formats ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("suffix", [name for name in io.WRITERS if name not in paths.PACKAGES])
+@pytest.mark.parametrize("suffix", [name for name in io.WRITERS if name not in io.PACKAGES])
 def test_every_format_is_written(inet, suffix):
     words = "web", "--profile=cone", *ANGLES, "-m", 8, "-n", 2, "-o", f"a{suffix}"
     assert inet(*words)[0] == 0
@@ -432,9 +432,9 @@ def test_every_format_is_written(inet, suffix):
         assert len(io.read(f"a{suffix}")[1]) in (16, 32)
 
 
-@pytest.mark.parametrize("suffix", paths.PACKAGES)
+@pytest.mark.parametrize("suffix", io.PACKAGES)
 def test_a_missing_package_is_named_before_the_work(inet, monkeypatch, suffix):
-    monkeypatch.setattr(paths.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(io.importlib.util, "find_spec", lambda name: None)
     words = "web", "--profile=cone", *ANGLES, "-m", 8, "-o", f"a{suffix}"
     assert refused(inet(*words), "pip install")
 
