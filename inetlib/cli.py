@@ -1,8 +1,7 @@
 """The command line `inet`: measure, cover, web, optimize, explore, figures.
 
-Angles are degrees on it, and radians from the parser on.  Wrong input becomes one sentence on
-stderr, before the work begins and before anything slow is loaded; a file is written only after
-everything went well.
+Angles are degrees on it, and radians from the parser on.  Wrong input becomes one sentence,
+before the work begins and anything slow is loaded; files are written after all went well.
 """
 
 import argparse
@@ -146,16 +145,12 @@ def _number(wanted, allowed, made=float):
     return read
 
 
-def _is_whole(least, most=math.inf):
-    return lambda x: least <= x <= most and x == int(x)
-
-
 angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180, math.radians)
 turn = _number("a finite number", lambda x: True, math.radians)
 tolerance = _number("a positive number", lambda x: x > 0, math.radians)
 positive = _number("a positive number", lambda x: x > 0)
-whole = _number("a whole number from 1 upwards", _is_whole(1), int)
-port = _number("a whole number from 0 to 65535", _is_whole(0, 65535), int)
+whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
+port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
 
 
 def _angle_options(command, words, required=False):
@@ -164,19 +159,18 @@ def _angle_options(command, words, required=False):
         command.add_argument(name, type=angle, metavar="DEG", required=required, help=text)
 
 
-def _write_options(command):
+def _write_options(command, keep):
     text = "the net: .obj, .ply, .off, .vtp, .glb, .dxf or .3dm"
     command.add_argument("-o", "--output", required=True, metavar="FILE", help=text)
     text = "the four families of curves too, in .obj (.vtp, .glb, .dxf, .3dm always have them)"
     command.add_argument("--curves", action="store_true", help=text)
     command.add_argument("--force", action="store_true", help="replace the file if it is there")
-
-
-def _keep_options(command):
-    text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
-    command.add_argument("--tolerance", type=tolerance, default=least, metavar="DEG", help=text)
-    text = "write the best net even if it is off its angles"
-    command.add_argument("--keep", action="store_true", help=text)
+    if keep:
+        text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
+        command.add_argument("--tolerance", type=tolerance, default=least, metavar="DEG", help=text)
+        text = "write the best net even if it is off its angles"
+        command.add_argument("--keep", action="store_true", help=text)
+    _say_options(command)
 
 
 def _say_options(command):
@@ -217,16 +211,14 @@ def _cover_options(command):
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=turn, default=0.0, metavar="DEG", help=text)
-    _write_options(command)
-    _keep_options(command)
-    _say_options(command)
+    _write_options(command, keep=True)
 
 
 def _cover(given):
-    _check_output(given)
     from . import io
     from .examples import SURFACES
 
+    io.check_output(given.output, given.curves, given.force)
     if given.surface in SURFACES:
         (V, F), repaired = SURFACES[given.surface](), []
     else:
@@ -263,12 +255,13 @@ def _web_options(command):
         paper: the published algorithm (%(default)s)"""
     ways = "exact", "smooth", "paper"
     command.add_argument("--method", choices=ways, default="exact", help=text)
-    _write_options(command)
-    _say_options(command)
+    _write_options(command, keep=False)
 
 
 def _web(given):
-    _check_output(given)
+    from . import io
+
+    io.check_output(given.output, given.curves, given.force)
     profile = _profile(given.profile)
     from . import loxodrome
 
@@ -279,11 +272,7 @@ def _web(given):
 
 
 def _profile(name):
-    """The `surfaces.Profile` of this name, or through the rows of a file of this name.
-
-    Commas, semicolons, tabs or spaces stand between a radius and a height; first rows without
-    numbers are headings.
-    """
+    """The profile of this name, or through the rows of a file, each a radius and a height."""
     from . import surfaces
 
     if name in surfaces.PROFILES:
@@ -322,16 +311,14 @@ def _optimize_options(command):
         (%(default)s)"""
     ways = "mean", "medials", "diagonals", "squares", "jump"
     command.add_argument("--via", choices=ways, default="mean", help=text)
-    _write_options(command)
-    _keep_options(command)
-    _say_options(command)
+    _write_options(command, keep=True)
 
 
 def _optimize(given):
-    _check_output(given)
-    V, Q, polygons, notes = _read_net(given)
     from . import io, mesh
 
+    io.check_output(given.output, given.curves, given.force)
+    V, Q, polygons, notes = _read_net(given)
     near = None
     if given.reference is not None:
         W, F, repaired = io.surface(given.reference)
@@ -357,14 +344,8 @@ def _optimize(given):
         tolerance=given.tolerance,
         progress=_progress(given),
     )
-    more = {
-        "converged": found.converged,
-        "message": found.message,
-        "steps": len(found.history) - 1,
-        "lam": found.lam,
-        "mu": found.mu,
-        "seconds": found.seconds,
-    }
+    names = "converged", "message", "lam", "mu", "seconds"
+    more = {name: getattr(found, name) for name in names} | {"steps": len(found.history) - 1}
     about = _report(given, found.V, Q, polygons)
     return _finish(given, found.V, Q, polygons, about, notes, more)
 
@@ -378,11 +359,12 @@ def _explore_options(command):
 
 
 def _explore(given):
-    surface = None
-    if given.surface:
-        from . import clean, io
+    from . import io
 
-        surface = io.surface(given.surface)
+    surface = given.surface and io.surface(given.surface)
+    if surface:
+        from . import clean
+
         clean.clean(surface.V, surface.F)  # refuses what cannot be covered
     from .explorer import notebook
 
@@ -430,12 +412,6 @@ def notebooks(folder: Path, name: str) -> list[str]:
     if not found:
         raise ValueError(f"figures: no notebook begins with {name!r}, and none draws it")
     return found
-
-
-def _check_output(given):
-    from . import io
-
-    io.check_output(given.output, given.curves, given.force)
 
 
 def _read_net(given, must_label=True):
@@ -489,8 +465,7 @@ def _finish(given, V, Q, polygons, about, notes, more):
     written = good or given.keep
     if written:
         suffix = Path(given.output).suffix.lower()
-        lines = given.curves or (suffix in io.WITH_CURVES and suffix != ".obj")
-        curves = "all" if lines else None
+        curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
         io.write(given.output, V, Q, curves, polygons, given.force)
     _say(given, about, given.output if written else None, notes, **more)
     if good:

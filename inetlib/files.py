@@ -1,8 +1,7 @@
-"""Files that appear whole or not at all, and nothing left beside them.
+"""Files that appear whole or not at all: written beside their place as `.new-PID-...`, renamed.
 
-A file is written beside its place, under a name `.new-PID-...`, and renamed when complete.
-What a process that was killed has left is removed by the next that writes into the folder.
-Nothing slow is imported: `start` needs this module before all others.
+What a killed process has left is removed by the next that writes into the folder.  Nothing
+slow is imported: `start` needs this module before all others.
 """
 
 import os
@@ -17,10 +16,7 @@ WRITTEN = []  # the files that this process has put in their places
 
 @contextmanager
 def replacing(path):
-    """A name beside `path` to write to, renamed onto it when the block ends well, else removed.
-
-    It ends like `path`, as writers look at the suffix.
-    """
+    """A name like `path` to write to, renamed onto it when the block ends well, else removed."""
     path = Path(path)
     with _temporary(path.parent, path.suffix.lower()) as new:
         yield new
@@ -68,8 +64,7 @@ def _remove(path):
     with suppress(OSError):  # on Windows a file that is open stays, for the next sweep
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
 
 
 def _gone(pid):
@@ -85,8 +80,6 @@ def _gone(pid):
         return not handle
     try:
         os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    except OSError:  # somebody else's
-        pass
+    except OSError as error:
+        return isinstance(error, ProcessLookupError)  # others: the process is somebody else's
     return False

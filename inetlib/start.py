@@ -1,8 +1,7 @@
-"""The way in of `inet`, as a process of its own: Ctrl-C ends it at any moment, with a sentence.
+"""The way in of `inet` as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-A KeyboardInterrupt that is raised while packages are loaded, or in callbacks, becomes another
-error or gets lost.  So nothing is raised: the handler tidies up, speaks, and ends the process.
-It is installed before the slow imports, and only by programs; `cli.main` installs none.
+Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks:
+a handler tidies up, speaks, and ends the process.  Only programs install it, before all else.
 """
 
 import os
@@ -22,34 +21,33 @@ def main(arguments=None):
     listen(lambda: f"inet: {stopped(*words[:1])}")
     from .cli import main as run
 
-    code = run(arguments)
+    code = run(words)
     finished()
     return code
 
 
 def stopped(command="", written=0):
-    """What is said when a command is stopped; written: how many files there were before."""
+    """What is said of a command when it is stopped; written: the files there were before it."""
     quiet = command in ("figures", "explore") or len(files.WRITTEN) > written
-    return "stopped" + ", nothing was written" * (not quiet)
+    return "stopped" if quiet else "stopped, nothing was written"
 
 
 def listen(sentence, fresh=False):
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    sentence() is said on stderr; fresh: on a new line, where a progress bar may be.  A signal
-    that was ignored stays so, as for programs in the background of a script.
+    sentence() is said on stderr; fresh: on a new line, after a progress bar.  A signal that
+    was ignored stays so, as for programs in the background of a script.
     """
 
     def stop(number, frame):
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         try:
-            for end in ENDS:
+            for end in [*ENDS, files.clear]:
                 end()
-            files.clear()
         finally:
+            line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
             with suppress(OSError):  # nobody may be there to read it
-                line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
                 os.write(2, line.encode())  # sys.stderr may be in the midst of a line
             os._exit(128 + number)
 
