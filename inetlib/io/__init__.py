@@ -64,20 +64,18 @@ class Net(NamedTuple):
 
 
 def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
-    """The mesh in a file, as it is: V (n, 3) float64 and F.
+    """The mesh in a file, as it is: V (n, 3) float64 and F, counted from 0.
 
     F is int64, (f, 3) or (f, 4) when all faces are triangles or all are quads, else a list
-    of lists of indices.  Equal points of STL and GLB files are one vertex.  ValueError when
-    the file is missing, empty, broken, of another kind than its suffix says, has no faces,
-    an index out of range or a coordinate that is NaN, infinite or beyond 1e100.
+    of lists.  Equal points of STL and GLB files are one vertex.  ValueError when the file is
+    missing, empty, broken, of another kind than its suffix says, without faces, or has an
+    index out of range or a coordinate that is NaN, infinite or beyond 1e100.
     """
     path = Path(path)
     known = _format(path, READERS, "read")
     with _named(path), np.errstate(all="ignore"):
-        if path.is_dir():
-            raise ValueError("this is a directory, and a file is wanted")
         if not path.is_file():
-            raise ValueError("there is no such file")
+            raise ValueError("a directory, no file" if path.is_dir() else "there is no such file")
         if not path.stat().st_size:
             raise ValueError("the file is empty")
         V, F = _checked(*known.read(path))
@@ -92,7 +90,7 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
     """The file's mesh as a reference surface of triangles, see `repair.clean`.
 
     With merge=False duplicate vertices stay: what was cut open on purpose stays open.
-    ValueError as in `read`, and for what is no surface; vertex numbers count from 0.
+    ValueError as in `read`, and for what is no surface.
     """
     V, F = read(path)
     from ..repair import clean
@@ -187,14 +185,7 @@ def check_output(path: str | Path, curves: bool = False, force: bool = False) ->
     return known
 
 
-def write(
-    path: str | Path,
-    V: np.ndarray,
-    Q: np.ndarray,
-    curves: mesh.Families | str | None = None,
-    polygons: list | tuple = (),
-    force: bool = False,
-) -> None:
+def write(path, V, Q, curves=None, polygons=(), force: bool = False) -> None:
     """Write a net; the suffix of the path names the format.
 
     V         (n, 3) vertices; float32 in GLB files by the format, else every bit is kept
@@ -205,10 +196,9 @@ def write(
     polygons  further faces: index arrays (k,)
     force     whether to replace an existing file
 
-    The file is written beside its place and renamed when complete.  FileExistsError for an
-    existing file without `force`; ValueError for unknown suffixes, directories, a missing
-    folder, curves where the format has no place for them, and indices out of range;
-    PermissionError; ImportError when the package for the format is missing.
+    The file is complete or not there.  ValueError for unknown suffixes, directories, a missing
+    folder, curves in a format without them, and indices out of range; FileExistsError without
+    `force`; PermissionError; ImportError when the package for the format is missing.
     """
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)
@@ -218,11 +208,9 @@ def write(
         curves = mesh.polylines(Q)
     elif not isinstance(curves, mesh.Families):
         raise ValueError(f'curves are a {type(curves).__name__}: mesh.Families, "all" or None')
-    families = {
-        name: [_row(curve, len(V), 2, "curve") for curve in family]
-        for name, family in curves._asdict().items()
-        if family
-    }
+    families = {name: family for name, family in curves._asdict().items() if family}
+    for name, family in families.items():
+        families[name] = [_row(curve, len(V), 2, "curve") for curve in family]
     polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
     known = check_output(path, bool(families), force)
     with files.replacing(path) as new:

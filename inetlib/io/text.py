@@ -25,19 +25,15 @@ def _rows(path):
             yield number, words
 
 
-def _numbers(kind, words, number, what):
-    """The words as numbers of a kind; ValueError that the line has no such `what`."""
+def _numbers(kind, words, count, number, what):
+    """The `count` numbers that a line begins with; ValueError that it is no such `what`."""
     try:
-        return [kind(word) for word in words]
+        found = [kind(word) for word in words[:count]]
     except ValueError:
-        raise ValueError(f"line {number}: {' '.join(words)[:60]!r} is no {what}") from None
-
-
-def _point(words, number):
-    point = _numbers(float, words[:3], number, "point")
-    if len(point) < 3:
-        raise ValueError(f"line {number}: a point needs three coordinates")
-    return point
+        found = []
+    if len(found) != count:
+        raise ValueError(f"line {number}: {' '.join(words)[:60]!r} is no {what}")
+    return found
 
 
 def _check_face(face, given, count, first, number):
@@ -63,10 +59,10 @@ def read_obj(path):
     points, faces, origins = [], [], []
     for number, words in _rows(path):
         if words[0] == "v":
-            points.append(_point(words[1:], number))
+            points.append(_numbers(float, words[1:], 3, number, "point of three coordinates"))
         elif words[0] == "f":
             corners = [word.partition("/")[0] for word in words[1:]]
-            given = _numbers(int, corners, number, "face")
+            given = _numbers(int, corners, len(corners), number, "face")
             faces.append([k - 1 if k >= 0 else len(points) + k for k in given])
             origins.append((number, given))
         elif not words[0][0].isalpha():
@@ -85,21 +81,18 @@ def read_off(path):
         raise ValueError(f"line {number}: a text OFF file starts with OFF, not {first[0][:40]!r}")
     rows = [(number, first[1:])] * (len(first) > 1) + rows[1:]  # the counts may follow OFF
     number, words = rows[0] if rows else (number, [])
-    counts = _numbers(int, words[:2], number, "pair of numbers of vertices and faces")
-    if len(counts) < 2 or min(counts) < 0 or len(rows) < 1 + sum(counts):
+    most = _numbers(int, words, 2, number, "pair of numbers, of vertices and faces")
+    if min(most) < 0 or len(rows) < 1 + sum(most):
         raise ValueError(
-            f"the file ends early: after OFF it has {len(rows)} lines, and promises "
-            f"{counts} vertices and faces, a line each"
+            f"the file ends early: {most} vertices and faces are promised, "
+            f"and there are {len(rows) - 1} lines for them"
         )
-    points = [_point(words, number) for number, words in rows[1 : 1 + counts[0]]]
+    rows, below = rows[1 : 1 + most[0]], rows[1 + most[0] : 1 + sum(most)]
+    points = [_numbers(float, words, 3, number, "point of three coordinates") for number, words in rows]
     faces = []
-    for number, words in rows[1 + counts[0] : 1 + sum(counts)]:
-        size = _numbers(int, words[:1], number, "face")[0]
-        faces.append(_numbers(int, words[1 : size + 1], number, "face"))
-        if len(faces[-1]) != size:
-            raise ValueError(
-                f"line {number}: a face of {size} corners has only {len(faces[-1])} of them"
-            )
+    for number, words in below:
+        size = _numbers(int, words, 1, number, "face")[0]
+        faces.append(_numbers(int, words[1:], size, number, f"face of {size} corners"))
         _check_face(faces[-1], faces[-1], len(points), 0, number)
     return points, faces
 
