@@ -99,20 +99,16 @@ def main(arguments: list[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     except (ValueError, OSError, ImportError, RuntimeError, ArithmeticError) as error:
-        return _tell(_sentence(error), WRONG)
+        return _tell(error, WRONG)
     except MemoryError:
         return _tell("there is not enough memory for this: ask for fewer quads", WRONG)
 
 
 def _tell(words, code):
-    print("inet:", " ".join(str(words).split()), file=sys.stderr)
+    if isinstance(words, OSError) and words.strerror and words.filename is not None:
+        words = f"{words.filename}: {words.strerror}"
+    print("inet:", " ".join((str(words) or type(words).__name__).split()), file=sys.stderr)
     return code
-
-
-def _sentence(error):
-    if isinstance(error, OSError) and error.strerror and error.filename is not None:
-        return f"{error.filename}: {error.strerror}"
-    return str(error) or type(error).__name__
 
 
 def parser(words: list[str]) -> Parser:

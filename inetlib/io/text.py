@@ -88,7 +88,9 @@ def read_off(path):
             f"and there are {len(rows) - 1} lines for them"
         )
     rows, below = rows[1 : 1 + most[0]], rows[1 + most[0] : 1 + sum(most)]
-    points = [_numbers(float, words, 3, number, "point of three coordinates") for number, words in rows]
+    points = [
+        _numbers(float, words, 3, number, "point of three coordinates") for number, words in rows
+    ]
     faces = []
     for number, words in below:
         size = _numbers(int, words, 1, number, "face")[0]
