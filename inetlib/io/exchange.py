@@ -16,9 +16,8 @@ FAMILIES = "u", "v", "d1", "d2"
 READ_VTP = """import sys, numpy, pyvista
 found = pyvista.read(sys.argv[1])
 assert not found.n_strips, "it holds strips of triangles, and plain polygons are wanted"
-cells = pyvista.CellArray(found.faces)
-corners, starts = cells.connectivity_array, cells.offset_array
-numpy.savez(sys.stdout.buffer, points=found.points, corners=corners, starts=starts)"""
+sizes = numpy.array([len(face) for face in found.irregular_faces], dtype=int)
+numpy.savez(sys.stdout.buffer, points=found.points, padded=found.faces, sizes=sizes)"""
 
 
 def read_vtp(path):
@@ -33,12 +32,13 @@ def read_vtp(path):
     errors = done.stderr.decode(errors="replace")
     said = re.search(r"(?:ERR\|.*?\)|AssertionError): ([^\r\n\x1b]*)", errors)
     if said or done.returncode:
-        raise ValueError(f"the VTP file is broken, says VTK{': ' + said[1] if said else ''}")
-    points, corners, starts = np.load(BytesIO(done.stdout)).values()
-    sizes = np.diff(starts)
+        raise ValueError(
+            f"the VTP file is broken, says VTK{': ' + said[1].strip() if said else ''}"
+        )
+    points, padded, sizes = np.load(BytesIO(done.stdout)).values()  # sizes before the faces, too
     if len(set(sizes.tolist())) == 1:
-        return points, corners.reshape(-1, sizes[0])
-    return points, np.split(corners, starts[1:])[:-1]
+        return points, padded.reshape(len(sizes), -1)[:, 1:]
+    return points, [face[1:] for face in np.split(padded, np.cumsum(1 + sizes))[:-1]]
 
 
 def write_vtp(path, V, Q, polygons, curves):

@@ -43,11 +43,10 @@ def _check_face(face, given, count, first, number):
     """
     if len(face) < 3:
         raise ValueError(f"line {number}: a face needs three corners, this one has {len(face)}")
-    for vertex, word in zip(face, given, strict=True):
-        if not 0 <= vertex < count:
-            raise ValueError(
-                f"line {number}: there is no vertex {word}, only {first} to {count - 1 + first}"
-            )
+    if not 0 <= min(face) <= max(face) < count:
+        bad = next(word for k, word in zip(face, given, strict=True) if not 0 <= k < count)
+        last = count - 1 + first
+        raise ValueError(f"line {number}: there is no vertex {bad}, only {first} to {last}")
 
 
 def read_obj(path):
