@@ -18,7 +18,9 @@ from . import mesh, ties
 
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
+DARK = "#6f8fbf"  # inscribed parallelograms in space
 STYLE = files("inetlib") / "inet.mplstyle"
+DEGREE = float(np.pi / 180)
 ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on every machine
 
 
@@ -182,6 +184,27 @@ def order(keys):
     keys = np.asarray(keys, dtype=float)
     close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
     return np.argsort(ties.ranks(keys, close), kind="stable")
+
+
+def families(V, Q, widths):
+    """Lines for `scene`: the polylines of each family of {family: width} in its colour."""
+    found = mesh.polylines(Q)._asdict()
+    return [(V[line], COLOURS[name], w) for name, w in widths.items() for line in found[name]]
+
+
+def cells(V, Q, white=False):
+    """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
+
+    light: the four corners left of every face; with white=True the white quads of the
+    checkerboard, and corners only where these leave some along the rim.
+    """
+    board = mesh.checkerboard(V, Q)
+    black = board.black + len(V)
+    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)
+    light = corners.swapaxes(0, 1).reshape(-1, 4)
+    if white:
+        light = np.concatenate([board.white + len(V), corners[np.bincount(Q.ravel())[Q] < 4]])
+    return np.concatenate([V, board.V]), black, light
 
 
 def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):

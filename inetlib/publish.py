@@ -7,7 +7,9 @@ claimed.  On another machine the last digits of all these differ: what shows the
 Paper: Figs. 1-13.
 """
 
+import functools
 import hashlib
+import inspect
 import io
 import json
 import os
@@ -45,6 +47,23 @@ class Drawing(NamedTuple):
     claims: dict
 
 
+def drawn(draw):
+    """`draw` of a module of `drawings`, which returns (figure, data, nets, claims), as a function
+    that returns the `Drawing`: named by its module, with the arguments of the call.
+    """
+    signature, name = inspect.signature(draw), draw.__module__.rpartition(".")[2]
+
+    @functools.wraps(draw)
+    def whole(*args, **kwargs):
+        given = signature.bind(*args, **kwargs)
+        given.apply_defaults()
+        figure, data, nets, claims = draw(*given.args, **given.kwargs)
+        parameters = {k: x for k, x in given.arguments.items() if not (x is None or callable(x))}
+        return Drawing(name, figure, f"{draw.__module__}.draw", parameters, data, nets, claims)
+
+    return whole
+
+
 def deviations(nets):
     """Largest deviation of theta and theta0, degrees, over all faces of all nets.
 
@@ -52,14 +71,15 @@ def deviations(nets):
     """
     if not nets:
         return np.nan, np.nan
-    off = [
-        [
-            measure.spread(a, b).max_deviation
-            for a, b in zip(measure.angles(V, Q), asked, strict=True)
-        ]
-        for V, Q, *asked in nets
-    ]
+    off = [measure.deviations(V, Q, *asked).max(axis=1) for V, Q, *asked in nets]
+    if not np.isfinite(off).all():
+        raise ValueError("the angles that a net should have are no finite numbers")
     return tuple(float(x) for x in np.degrees(np.max(off, axis=0)))
+
+
+def off(V, Q, angles):
+    """The larger deviation of both angles (radians) over all faces: degrees, 6 decimals."""
+    return round(float(np.degrees(measure.deviations(V, Q, *angles).max())), 6)
 
 
 def save(drawing, folder):
@@ -128,6 +148,8 @@ def _rounded(value):
         return {name: _rounded(x) for name, x in value.items()}
     if isinstance(value, (list, tuple)):
         return [_rounded(x) for x in value]
+    if isinstance(value, complex):
+        return _rounded([value.real, value.imag])
     if isinstance(value, float) and np.isfinite(value):
         return round(value, 9) + 0.0
     return value

@@ -9,7 +9,7 @@ from matplotlib import pyplot as plt
 from scipy.spatial import KDTree
 
 from inetlib import measure, plot, publish
-from inetlib.drawings import _lighter, fig09
+from inetlib.drawings import fig09, lighter
 
 PANELS = [f"{letter}{column}" for letter in "ABCDE" for column in (2, 4)]
 T = np.radians(45)  # of the conjugate surface
@@ -171,9 +171,9 @@ def pixels(figure):
 def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(glides, panel):
     g = glides[panel]
     seen = []
-    for change in (lambda scene: None, _lighter.lighter):
+    for change in (lambda scene: None, lighter.lighter):
         figure, axes = plot.canvas([["one"]], 3, 3)
-        lines = fig09._isothermal.coloured(g.result.V, g.Q, {"v": 0.6, "u": 0.6})
+        lines = fig09.plot.families(g.result.V, g.Q, {"v": 0.6, "u": 0.6})
         fill = plot.shade(g.result.V, g.Q)
         scene = plot.scene(axes["one"], plot.camera(0.3, 0.5), g.result.V, g.Q, fill, lines)
         change(scene)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from inetlib import measure, mesh, parallelogram, solver, surfaces
-from inetlib.solver import grids, run, sparse
-from inetlib.solver import residuals as constraints
+from inetlib.solver import grids, residuals, run, sparse
 
 ANGLES = [(60, 60), (60, 45), (80, 110), (130, 100)]
 
@@ -29,7 +28,7 @@ def assembled(P):
     """(f, J) of the same grid from the constraints, rows in pairs face by face."""
     Q = mesh.grid_quads(P.shape[1] - 1, P.shape[2] - 1)
     V = np.moveaxis(P, 0, 2).reshape(-1, 3)
-    f, jacobian = constraints.log_ratios(V[Q].reshape(-1, 12))
+    f, jacobian = residuals.log_ratios(V[Q].reshape(-1, 12))
     J = sparse.rows(jacobian, sparse.coordinates(Q), V.size)
     return (f - [0.1, -0.2]).ravel(), J
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from inetlib import conformal, measure, mesh, parallelogram, solver
-from inetlib.solver import goal as goals
 from inetlib.solver import guided
+from inetlib.solver.goal import aim
 
 RIGHT, SIXTY = np.pi / 2, np.pi / 3
 
 
 def count(Q, **wanted):
-    return guided.size(Q, Q.max() + 1, goals.goal(**wanted))
+    return guided.size(Q, Q.max() + 1, aim(**wanted))
 
 
 def test_variables_and_constraints_of_a_20_x_20_grid():
@@ -36,7 +36,7 @@ def test_variables_of_the_hexagon_mesh_are_the_printed_ones():
 def test_the_start_is_a_solution_on_a_net_of_these_angles(angles):
     z = conformal.sheared_grid(*angles, 4, 3, origin=1 + 1j, edge=0.3)
     V, Q = conformal.quads(z**2)
-    goal = goals.goal(*angles)
+    goal = aim(*angles)
     lay = guided.layout(Q, len(V), goal.equal)
     x = guided.start(lay, V, Q)
     residual, H = guided.hard(lay, goal, x)
@@ -50,7 +50,7 @@ def test_the_jacobian_of_all_equations_together():
     V = np.random.default_rng(0).normal(size=(12, 3))
     Q = mesh.grid_quads(3, 2)
     for wanted in ({"theta": 1.0, "theta0": 1.2}, {"theta": 1.0, "theta0": 1.0}, {"mu": 1.3}):
-        goal = goals.goal(**wanted)
+        goal = aim(**wanted)
         lay = guided.layout(Q, len(V), goal.equal)
         x = guided.start(lay, V, Q) + 0.1
         d = np.random.default_rng(1).normal(size=x.size)

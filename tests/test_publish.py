@@ -284,7 +284,7 @@ UNWRITABLE = {
     "an angle that is no number": (
         dict(nets=[(*conformal.quads(conformal.sheared_grid(T, T0, 1, 1)), np.nan, T0)]),
         ValueError,
-        "target = nan",
+        "no finite",
     ),
 }
 

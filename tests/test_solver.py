@@ -6,8 +6,8 @@ from test_guided import patch
 
 import inetlib
 from inetlib import loxodrome, measure, mesh, parallelogram, reference, solver
-from inetlib.solver import goal as goals
 from inetlib.solver import problem, run
+from inetlib.solver.goal import aim, freedom
 
 RIGHT, SIXTY = np.pi / 2, np.pi / 3
 ONE_NANODEGREE = np.radians(1e-9)
@@ -64,10 +64,10 @@ def test_a_net_that_has_its_angles_stays_where_it_is():
 def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
     V, Q = patch(5)
     for wanted in ({"theta": 1.5, "theta0": 1.4}, {"theta": 1.5}, {}):
-        goal = goals.goal(**wanted)
+        goal = aim(**wanted)
         given = problem.prepare(V, Q, goal)
-        s = goals.freedom(goal, (0.0, 0.0))
-        d, ds = run.angle_step(given, V, goal, s, {})
+        s = freedom(goal, (0.0, 0.0))
+        d, ds = run.angle_step(given, V, goal, s)
         residual, J, slopes = run.equations(given, V, goal, s)
         np.testing.assert_allclose(J @ d.ravel() - slopes @ ds, -residual, atol=1e-10)
         # the same by LAPACK: eliminate s by projecting on what the slopes cannot reach
@@ -80,10 +80,10 @@ def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
 def test_a_shape_step_minimises_the_linearised_energy():
     V, Q = patch(4)
     surface = reference.mesh(*patch(9))
-    goal = goals.goal(theta=1.4)
+    goal = aim(theta=1.4)
     given = problem.prepare(V, Q, goal, reference=surface)
     s = np.array([0.1])
-    d, ds = run.shape_step(given, V, goal, s, {})
+    d, ds = run.shape_step(given, V, goal, s)
     residual, J, slopes = run.equations(given, V, goal, s)
     A, g = problem.shape(given, V)
     close = np.repeat(given.weights.closeness, 3)
@@ -104,7 +104,7 @@ def test_shape_energies_are_those_of_the_paper():
     V, Q = patch(4)
     surface = reference.mesh(*patch(9))
     weights = problem.Weights(fairness=0.3, approximation=0.5, boundary=0.7)
-    given = problem.prepare(V, Q, goals.goal(), weights, reference=surface)
+    given = problem.prepare(V, Q, aim(), weights, reference=surface)
     W = V + 0.05 * np.random.default_rng(1).normal(size=V.shape)
     grid = np.moveaxis(W.reshape(5, 5, 3), 2, 0)
     rows = np.concatenate([np.diff(grid, 2, axis=1).ravel(), np.diff(grid, 2, axis=2).ravel()])

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from .. import measure, mesh, plot, publish, reference, solver, surfaces, ties
+from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import _optimised
+from . import patches
 
 CELLS = 12
-DEGREE = np.pi / 180
 TITLES = {
     "A": "one side stays",
     "B": "a curve in the middle stays",
@@ -68,50 +68,42 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     return found
 
 
-def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65, elevation=50):
+@publish.drawn
+def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=50 * DEGREE):
     """Six wishes at the same two angles: five are granted, the last one is not.
 
-    theta, theta0: radians; azimuth, elevation: the camera, degrees.  Black: the vertices
+    theta, theta0: radians; azimuth, elevation: the camera, radians.  Black: the vertices
     that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
-    of their deviation.  Returns a `publish.Drawing`.
+    of their deviation.
 
     Paper: Sec. 6.1 (beyond the paper: B8).
     """
     figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     found, stay = nets(theta, theta0), curves()
-    off = {k: deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
+    off = {
+        k: np.degrees(measure.deviations(r.V, Q, theta, theta0).max(axis=0))
+        for k, (_, Q, r) in found.items()
+    }
     scale = Normalize(0, ties.next_multiple(off["F"].max(), 5))
     for letter, (V, Q, result) in found.items():
-        colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
+        colours = patches.DEVIATION(scale(off[letter]))[:, :3]
         lines = [(_closed(V, Q), OLD, 0.9)]
         lines += [(line, PRESCRIBED, 2.4) for line in _lines(result.V, Q, stay[letter])]
-        _optimised.surface(axes[letter], view, result.V, Q, colours, lines)
+        patches.surface(axes[letter], view, result.V, Q, colours, lines)
         plot.panel(axes[letter], letter, TITLES[letter])
-    _optimised.align(list(axes.values()), 0.12)
-    _optimised.bar(axes["F"], scale, [0.02, 0.06, 0.4, 0.035])
+    patches.align(list(axes.values()), 0.12)
+    patches.bar(axes["F"], scale, [0.02, 0.06, 0.4, 0.035])
     good = {k: x for k, x in found.items() if x[2].converged}
     claims = {f"{k} converged": bool(x[2].converged) for k, x in found.items()}
     for letter, (_, Q, result) in good.items():
-        claims |= _optimised.claims({letter: result}, Q)
-    return publish.Drawing(
-        "beyond_freedom",
+        claims |= patches.claims({letter: result}, Q)
+    return (
         figure,
-        "inetlib.drawings.beyond_freedom.draw",
-        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
         {k: r.V for k, (_, _, r) in good.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
         claims,
     )
-
-
-def deviation(V, Q, theta, theta0):
-    """The larger deviation of theta and theta0 of each face, degrees (f,).
-
-    Paper: Sec. 6.1 (beyond the paper: B8).
-    """
-    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), (theta, theta0), strict=True)]
-    return np.degrees(np.max(off, axis=0))
 
 
 def _closed(V, Q):

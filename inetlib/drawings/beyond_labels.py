@@ -6,9 +6,9 @@ Paper: Sec. 4.1 (labels; beyond the paper: B9).
 import numpy as np
 
 from .. import examples, mesh, plot, publish, reference, solver
-from . import _optimised
+from ..plot import DEGREE
+from . import patches
 
-DEGREE = np.pi / 180
 FACE = "#7b2d8b"  # the singular face
 SEAM = "#d0006f"
 ROWS = [[f"{letter}{k}" for k in range(6)] for letter in "ABC"]
@@ -78,12 +78,13 @@ def _domed(V, dome, wave):
     return V / np.linalg.norm(np.ptp(V, axis=0))
 
 
-def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
+@publish.drawn
+def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=48 * DEGREE):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 
-    theta, theta0: radians, of the nets; azimuth, elevation: the camera, degrees.  Edges have
+    theta, theta0: radians, of the nets; azimuth, elevation: the camera, radians.  Edges have
     the colours of u and v; where a mesh is refused, the names spread from one face until they
-    meet in disagreement along the dotted edges.  Returns a `publish.Drawing`.
+    meet in disagreement along the dotted edges.
 
     Paper: Sec. 4.1 (labels; beyond the paper: B9).
     """
@@ -94,11 +95,11 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
         _small(axes[name], V, Q, polygon)
         _title(axes[name], name, title, words[name])
     found = nets(theta, theta0)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     texts = {"D": "around an octagon", "E": "on a polar cap"}
     for letter, (_, Q, polygon, result) in found.items():
         corners = result.V[polygon]
-        _optimised.surface(axes[letter], view, result.V, Q, polygons=[(corners, FACE)])
+        patches.surface(axes[letter], view, result.V, Q, polygons=[(corners, FACE)])
         angles = (
             rf"$\theta={np.degrees(theta):.4g}\degree,\ \theta_0={np.degrees(theta0):.4g}\degree$"
         )
@@ -106,12 +107,9 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70, elevation=48):
     claims = {f"{name} {meshes[name][0]}": text.replace("\n", " ") for name, text in words.items()}
     numbers = {}
     for letter, (_, Q, _, result) in found.items():
-        numbers |= _optimised.claims({letter: result}, Q)
-    return publish.Drawing(
-        "beyond_labels",
+        numbers |= patches.claims({letter: result}, Q)
+    return (
         figure,
-        "inetlib.drawings.beyond_labels.draw",
-        {"theta": theta, "theta0": theta0, "azimuth": azimuth, "elevation": elevation},
         {k: r.V for k, (_, _, _, r) in found.items()},
         [(r.V, Q, r.theta, r.theta0) for _, Q, _, r in found.values()],
         claims | numbers,
@@ -122,7 +120,7 @@ def _small(ax, V, Q, polygon):
     """A mesh with its edges in the colours of the families, and where these disagree."""
     labelled, bad = examples.seam(Q)
     flat = np.ptp(V[:, 2]) == 0
-    points = plot.plane(V) if flat else plot.camera(*np.radians([-75, 32]))(V)[0]
+    points = plot.plane(V) if flat else plot.camera(-75 * DEGREE, 32 * DEGREE)(V)[0]
     if flat:
         plot.polygons(ax, points, Q, "#f0f2f5")
     if polygon is not None:
@@ -137,7 +135,7 @@ def _small(ax, V, Q, polygon):
             plot.curves(ax, points[pairs], plot.COLOURS[family], 1.0)
     else:
         lines = [(V[pair], plot.COLOURS[k], 0.9) for k in "uv" for pair in edges[k]]
-        view = plot.camera(*np.radians([-75, 32]))
+        view = plot.camera(-75 * DEGREE, 32 * DEGREE)
         plot.scene(ax, view, V, Q, "#e3e7ee", lines, lift=0.01)
     low, high = points.min(axis=0), points.max(axis=0)
     half = 0.53 * (high - low).max() * np.array([-1, 1])

@@ -3,15 +3,15 @@
 import numpy as np
 
 from .. import mesh, parallelogram, planar, plot, publish
+from ..plot import DEGREE
 
-DEGREE = float(np.pi / 180)
 
-
+@publish.drawn
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     """A leaf filled with a net, a bent annulus, a hexagon with rings, and its middle.
 
     theta, theta0: radians, of the hexagon (C and D), the others have 60 degrees; tip: angle
-    of the leaf's tips, radians; pull: of two handles of the annulus.  Returns a `publish.Drawing`.
+    of the leaf's tips, radians; pull: of two handles of the annulus.
 
     Paper: Sec. 3.3 (beyond the paper: B7).
     """
@@ -30,14 +30,11 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
         plot.polygons(axes[name], three.V, polygon[None], plot.GREY, plot.INK, 0.8)
     found = {"leaf": (one, Q1, *equal), "annulus": (two, Q2, *equal)}
     found["hexagon"] = three, Q3, theta, theta0
-    return publish.Drawing(
-        name="beyond_planar",
-        figure=figure,
-        function="inetlib.drawings.beyond_planar.draw",
-        parameters=dict(theta=theta, theta0=theta0, tip=tip, pull=pull),
-        data={k: net.V for k, (net, *_) in found.items()} | {"outline": outline},
-        nets=[(net.V, *rest) for net, *rest in found.values()],
-        claims=_claims(found),
+    return (
+        figure,
+        {k: net.V for k, (net, *_) in found.items()} | {"outline": outline},
+        [(net.V, *rest) for net, *rest in found.values()],
+        _claims(found),
     )
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.patheffects import withStroke
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import net, text_at
+from ..plot import DEGREE
+from .abcd import net, text_at
 
 COLOURS = plot.COLOURS
-DEGREE = np.pi / 180
 ANGLES = [30, 60, 90, 120, 150]  # the arcs and rays drawn, degrees
 RATIOS = [2.5, 1.6, 1, 1 / 1.6, 1 / 2.5]  # the circles of mu drawn, of lam without 1
 SPECIAL = {  # degrees: the label and its place, right or left of the point
@@ -26,13 +26,14 @@ WIDE, HIGH = 2.45, 2.3  # the window
 EQUAL = "#7b2d8b"
 
 
+@publish.drawn
 def draw(rho=0.95 + 1.15j):
     """The half plane with its four families and special points, and what one point rho means.
 
     rho: complex, in the upper half plane, else ValueError.  (A) the circles of mu and lam, the
     rays of theta0 and the arcs of theta; bold those through rho.  (B) the quad of rho with its
     parallelogram.  (C) its four directions, a harmonic pencil, and the gaps between them.
-    Returns a `publish.Drawing`.
+
 
     Paper: Sec. 3.1 (beyond the paper: B2, B10).
     """
@@ -47,14 +48,11 @@ def draw(rho=0.95 + 1.15j):
     lines = parallelogram.directions(rho)
     ratio = parallelogram.cross_ratio(lines[0], lines[2], lines[1], lines[3])
     claims = {name: round(float(x), 9) for name, x in shape._asdict().items()}
-    return publish.Drawing(
-        name="beyond_rho",
-        figure=figure,
-        function="inetlib.drawings.beyond_rho.draw",
-        parameters={"rho": [rho.real, rho.imag]},
-        data={"rho": np.array([rho]), "directions": np.array(lines), "special": special()},
-        nets=[net(_corners(rho), shape.theta, shape.theta0)],
-        claims=claims | {"cross ratio": round(float(ratio), 9)},
+    return (
+        figure,
+        {"rho": np.array([rho]), "directions": np.array(lines), "special": special()},
+        [net(_corners(rho), shape.theta, shape.theta0)],
+        claims | {"cross ratio": round(float(ratio), 9)},
     )
 
 

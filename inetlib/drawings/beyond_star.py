@@ -4,8 +4,8 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from .. import conformal, loxodrome, measure, mesh, plot, publish, reference, solver, surfaces
+from ..plot import DEGREE
 
-DEGREE = np.pi / 180
 SIZES = 8, 16, 32, 64
 NAMES = {
     "z2": "$z^2$",
@@ -80,12 +80,13 @@ def table(found, theta, theta0, unit=False):
     }
 
 
+@publish.drawn
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     """(A) the chords at a vertex, (B) deviations against the size, (C) the numbers, in degrees.
 
     theta, theta0: radians.  The largest deviation of theta0 over the inner vertices, for the
     roof the one that 90 % of them stay below.  Full lines: chords over two edges; dotted: unit
-    tangents.  Returns a `publish.Drawing`.
+    tangents.
     """
     figure, axes = plot.canvas([["A", "B"], ["C", "B"]], 7.4, 4.1, [1, 1.15])
     found = nets(theta, theta0)
@@ -102,15 +103,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     claims = {f"{name}: order": _order(x) for name, x in chords.items() if name != "z2"}
     claims["z2: largest deviation, degrees"] = round(float(chords["z2"].max()), 9)
     data = {f"chords {k}": x for k, x in chords.items()}
-    return publish.Drawing(
-        "beyond_star",
-        figure,
-        "inetlib.drawings.beyond_star.draw",
-        {"theta": theta, "theta0": theta0},
-        data | {f"units {k}": x for k, x in units.items()},
-        exact,
-        claims,
-    )
+    return figure, data | {f"units {k}": x for k, x in units.items()}, exact, claims
 
 
 def _order(values):

@@ -6,12 +6,13 @@ Paper: Fig. 1.
 import numpy as np
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import angle_at, beside, corners, frame, net, text_at
+from ..plot import DEGREE
+from .abcd import angle_at, beside, corners, frame, net, text_at
 
-DEGREE = np.pi / 180
 SHADES = "#a9bfdd", "#f3d3c0"  # of the triangles ABD and ODC
 
 
+@publish.drawn
 def draw(theta=70 * DEGREE, theta0=55 * DEGREE, equal=60 * DEGREE):
     """A (theta, theta0)-parallelogram, a theta-parallelogram, and its two similar triangles.
 
@@ -31,14 +32,11 @@ def draw(theta=70 * DEGREE, theta0=55 * DEGREE, equal=60 * DEGREE):
     axes["middle"].set_title(rf"$\theta=\theta_0={both}$")
     axes["right"].set_title(r"$a : b : q \,=\, p/2 : q/2 : b$")
     lam, mu = (round(float(x), 9) for x in parallelogram.ratios(theta, theta0))
-    return publish.Drawing(
-        name="fig01",
-        figure=figure,
-        function="inetlib.drawings.fig01.draw",
-        parameters={"theta": theta, "theta0": theta0, "equal": equal},
-        data={"general": general, "special": special, "same_pose": np.stack(pair)},
-        nets=[net(general, theta, theta0), net(special, equal, equal)],
-        claims={"lam": lam, "mu": mu} | _proportion(special),
+    return (
+        figure,
+        {"general": general, "special": special, "same_pose": np.stack(pair)},
+        [net(general, theta, theta0), net(special, equal, equal)],
+        {"lam": lam, "mu": mu} | _proportion(special),
     )
 
 

@@ -6,13 +6,14 @@ Paper: Fig. 2.
 import numpy as np
 
 from .. import parallelogram, plot, publish
-from ._parallelogram import angle_at, beside, corners, frame, net, text_at
+from ..plot import DEGREE
+from .abcd import angle_at, beside, corners, frame, net, text_at
 
-DEGREE = np.pi / 180
 RATIOS = r"\lambda,\,\mu", r"1/\lambda,\,\mu", r"\lambda,\,1/\mu", r"1/\lambda,\,1/\mu"
 SURDS = {60: r"(1+\sqrt{5})/2", 45: r"(\sqrt{2}+\sqrt{6})/2", 30: r"(\sqrt{3}+\sqrt{7})/2"}
 
 
+@publish.drawn
 def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE, 30 * DEGREE)):
     """Four parallelograms (A-D) with reciprocal ratios, and three theta-parallelograms (E-G).
 
@@ -39,14 +40,11 @@ def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE,
         left = complex(shape.real.min() + origin.real, top[k])
         ax.text(left.real, left.imag, heading, size=10, va="bottom")
         _one(ax, shape + origin, *pair, r"1/\lambda" if k in (1, 3) else r"\lambda")
-    return publish.Drawing(
-        name="fig02",
-        figure=figure,
-        function="inetlib.drawings.fig02.draw",
-        parameters={"theta": theta, "theta0": theta0, "equal": list(equal)},
-        data={letter: shape for letter, shape in zip("ABCDEFG", shapes, strict=True)},
-        nets=[net(shape, *pair) for shape, pair in zip(shapes, angles, strict=True)],
-        claims={
+    return (
+        figure,
+        {letter: shape for letter, shape in zip("ABCDEFG", shapes, strict=True)},
+        [net(shape, *pair) for shape, pair in zip(shapes, angles, strict=True)],
+        {
             f"lam, mu {letter}": [round(float(x), 9) for x in pair]
             for letter, *pair in zip("ABCDEFG", lam, mu, strict=True)
         },

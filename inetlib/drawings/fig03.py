@@ -16,6 +16,7 @@ MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in rang
 SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as in `grid`
 
 
+@publish.drawn
 def draw(
     theta=RADIANS[80],
     theta0=RADIANS[50],
@@ -27,7 +28,7 @@ def draw(
 
     theta, theta0: radians, the angles of the grid A; theta1 and theta2: both angles of the
     grids B and C; cells: the patterns C1 to C3 have cells x cells quads, an even number.
-    Returns a `publish.Drawing`.
+
 
     Paper: Fig. 3.
     """
@@ -45,14 +46,11 @@ def draw(
     _pattern(axes["C_2"], "C_2", "under $z^2$, 0 outside", z["C2"], (7, -3))
     _pattern(axes["C_3"], "C_3", "under $z^2$, 0 inside", z["C3"])
     nets = {name: (*conformal.quads(z[name]), *angles[name[0]]) for name in z}
-    return publish.Drawing(
-        name="fig03",
-        figure=figure,
-        function="inetlib.drawings.fig03.draw",
-        parameters=dict(theta=theta, theta0=theta0, theta1=theta1, theta2=theta2, cells=cells),
-        data=z,
-        nets=[nets[name] for name in nets if name not in ("A'", "C1")],
-        claims=_claims(angles, nets),
+    return (
+        figure,
+        z,
+        [nets[name] for name in nets if name not in ("A'", "C1")],
+        _claims(angles, nets),
     )
 
 

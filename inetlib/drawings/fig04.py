@@ -3,43 +3,47 @@
 import numpy as np
 
 from .. import measure, parallelogram, plot, publish
+from ..plot import DEGREE
 
 GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
 
 
-def draw(theta=80, theta0=55, alone=60, azimuth=-100, elevation=58):
+@publish.drawn
+def draw(
+    theta=80 * DEGREE,
+    theta0=55 * DEGREE,
+    alone=60 * DEGREE,
+    azimuth=-100 * DEGREE,
+    elevation=58 * DEGREE,
+):
     """Two quads in space, seen from outside, each with its inscribed parallelogram.
 
-    theta, theta0: angles of the left quad, degrees; alone: both angles of the right one;
-    azimuth, elevation: the camera, degrees.  Returns a `publish.Drawing`.
+    theta, theta0: angles of the left quad, radians; alone: both angles of the right one;
+    azimuth, elevation: the camera, radians.
 
     Paper: Fig. 4.
     """
     figure, axes = plot.canvas([["A", "B"]], 7.2, 2.45)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     nets, data, claims = [], {}, {}
     titles = {
-        "A": rf"$\theta={theta}\degree$, $\theta_0={theta0}\degree$",
-        "B": rf"$\theta=\theta_0={alone}\degree$",
+        "A": rf"$\theta={theta / DEGREE:.4g}\degree$, $\theta_0={theta0 / DEGREE:.4g}\degree$",
+        "B": rf"$\theta=\theta_0={alone / DEGREE:.4g}\degree$",
     }
     for name, asked in (("A", (theta, theta0)), ("B", (alone, alone))):
-        V = _quad(*np.radians(asked))
+        V = _quad(*asked)
         lam, mu = (float(x[0]) for x in measure.ratios(V, FACE))
         _panel(axes[name], view, V)
         plot.panel(axes[name], name, rf"{titles[name]}:  $\lambda={lam:.3f}$, $\mu={mu:.3f}$")
-        nets.append((V, FACE, *np.radians(asked)))
+        nets.append((V, FACE, *asked))
         data[name] = V
         claims |= {f"lam_{name}": round(lam, 9), f"mu_{name}": round(mu, 9)}
     corners = view(np.concatenate(list(data.values())))[0]
     for ax in axes.values():
         ax.update_datalim([corners.min(axis=0) - 0.2, corners.max(axis=0) + 0.2])
         ax.autoscale_view()
-    parameters = {"theta": theta, "theta0": theta0, "alone": alone}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig04", figure, "inetlib.drawings.fig04.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _quad(theta, theta0):

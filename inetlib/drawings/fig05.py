@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 
 from .. import conformal, measure, mesh, parallelogram, plot, publish
+from ..plot import DEGREE
 
 STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
 SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
@@ -13,19 +14,28 @@ LINES = {"u": "$v$ = const.", "v": "$u$ = const.", "d1": "$u+v$ = const.", "d2":
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
 
-def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevation=22):
+@publish.drawn
+def draw(
+    theta=75 * DEGREE,
+    theta0=65 * DEGREE,
+    lines=6,
+    cells=3,
+    size=1.45,
+    azimuth=-85 * DEGREE,
+    elevation=22 * DEGREE,
+):
     """An I-web on a catenoid with its parameter square; below, a coarse mesh on it.
 
-    theta, theta0: angles of the web, degrees; lines, cells: steps of the smooth web (even)
+    theta, theta0: angles of the web, radians; lines, cells: steps of the smooth web (even)
     and of the mesh (odd); size: of the parameter square; azimuth, elevation: the camera,
-    degrees.  Returns a `publish.Drawing`.
+    radians.
 
     Paper: Fig. 5.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     rho = parallelogram.rho(*parallelogram.ratios(*asked))
     figure, axes = plot.canvas([["A", "A'"], ["B", "B'"]], 7.2, 6.4, ratios=[1, 1.35])
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
 
     def surface(uv):
         return _catenoid(size * (uv[..., 0] + rho * uv[..., 1]))
@@ -43,21 +53,11 @@ def draw(theta=75, theta0=65, lines=6, cells=3, size=1.45, azimuth=-85, elevatio
     plot.panel(axes["B"], "B", "a triangulated grid")
     plot.panel(axes["B'"], "B'", "the same grid as a mesh")
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
-    parameters = {"theta": theta, "theta0": theta0, "lines": lines, "cells": cells, "size": size}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
     claims = {
-        "sampled_net_max_deviation_deg": _deviation(net, asked),
-        "sampled_net_half_size_max_deviation_deg": _deviation(finer, asked),
+        "sampled_net_max_deviation_deg": publish.off(*net, asked),
+        "sampled_net_half_size_max_deviation_deg": publish.off(*finer, asked),
     }
-    return publish.Drawing(
-        "fig05",
-        figure,
-        "inetlib.drawings.fig05.draw",
-        parameters,
-        {"domain": domain[0], "mesh": net[0]},
-        [(*domain, *asked)],
-        claims,
-    )
+    return figure, {"domain": domain[0], "mesh": net[0]}, [(*domain, *asked)], claims
 
 
 def _catenoid(z):
@@ -83,10 +83,6 @@ def _families(n, samples=2):
 
 def _mesh(surface, cells):
     return surface(_points(cells)), mesh.grid_quads(cells, cells)
-
-
-def _deviation(net, asked):
-    return round(max(publish.deviations([(*net, *asked)])), 6)
 
 
 def _square(ax, n):
@@ -131,11 +127,7 @@ def _faces(ax, view, V, Q):
     middle = len(Q) // 2
     fill = plot.shade(V, Q, depth=0.25)
     fill[middle] = to_rgb(plot.FILL)
-    lines = [
-        (V[chain], plot.COLOURS[name], 1.1)
-        for name, chains in mesh.polylines(Q)._asdict().items()
-        for chain in chains
-    ]
+    lines = plot.families(V, Q, dict.fromkeys(plot.COLOURS, 1.1))
     plot.scene(ax, view, V, Q, fill, lines)
     corners = V[Q[middle]]
     flat = view(corners)[0]

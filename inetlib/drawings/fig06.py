@@ -1,9 +1,9 @@
 """Fig. 6: the special cases lam = 1, mu = 1, lam = mu and lam = mu = 1."""
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from .. import conformal, mesh, parallelogram, plot, publish
+from ..plot import DEGREE
 
 TITLES = {"A": r"$\lambda=1$", "B": r"$\mu=1$", "C": r"$\lambda=\mu$", "D": r"$\lambda=\mu=1$"}
 SHAPES = {
@@ -14,43 +14,38 @@ SHAPES = {
 }
 
 
-def draw(angle=60, cells=6, size=1.5, azimuth=-90, elevation=20):
+@publish.drawn
+def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=20 * DEGREE):
     """Four isogonal nets on a sphere with their black quads, and one parallelogram of each.
 
-    angle: degrees, theta in A, theta0 in B, both in C; cells: about how many faces each way;
-    size: of the net along u; azimuth, elevation: the camera, degrees.  Returns a
-    `publish.Drawing`.
+    angle: radians, theta in A, theta0 in B, both in C; cells: about how many faces each way;
+    size: of the net along u; azimuth, elevation: the camera, radians.
 
     Paper: Fig. 6.
     """
     panels = [list("ABCD"), list("abcd")]
     figure, axes = plot.canvas(panels, 7.6, 3.9)
-    view = plot.camera(*np.radians([azimuth, elevation]))
-    asked = {"A": (angle, 90), "B": (90, angle), "C": (angle, angle), "D": (90, 90)}
+    view = plot.camera(azimuth, elevation)
+    right = 90 * DEGREE
+    asked = {"A": (angle, right), "B": (right, angle), "C": (angle, angle), "D": (right, right)}
     nets, data, claims = [], {}, {}
-    for name, degrees in asked.items():
-        target = np.radians(degrees)
+    for name, target in asked.items():
         lam, mu = parallelogram.ratios(*target)
         z = _domain(target, cells, size)
         V, Q = _sphere(z), mesh.grid_quads(*np.subtract(z.shape, 1))
         _net(axes[name], view, V, Q)
-        _parallelogram(axes[name.lower()], parallelogram.rho(lam, mu), degrees)
+        abcd(axes[name.lower()], parallelogram.rho(lam, mu), target)
         plot.panel(axes[name], name, TITLES[name])
         axes[name.lower()].text(0, -0.6, SHAPES[name], ha="center", va="top")
         nets.append((*conformal.quads(z), *target))
         data |= {f"net_{name}": V, f"domain_{name}": nets[-1][0]}
-        off = max(publish.deviations([(V, Q, *target)]))
         claims |= {f"lam_{name}": round(float(lam), 9), f"mu_{name}": round(float(mu), 9)}
-        claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
+        claims[f"sampled_net_{name}_max_deviation_deg"] = publish.off(V, Q, target)
     flat = view(np.concatenate([data[f"net_{name}"] for name in asked]))[0]
     for name in asked:
         axes[name].update_datalim([flat.min(axis=0), flat.max(axis=0)])
         axes[name].autoscale_view()
-    parameters = {"angle": angle, "cells": cells, "size": size}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig06", figure, "inetlib.drawings.fig06.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _domain(target, cells, size):
@@ -69,20 +64,13 @@ def _sphere(z):
 
 def _net(ax, view, V, Q):
     """A net in space: black quads dark, the corners left of its faces light, four a face."""
-    board = mesh.checkerboard(V, Q)
-    points, black = np.concatenate([V, board.V]), board.black + len(V)
-    corners = [np.stack([black[:, k - 1], Q[:, k], black[:, k], black[:, k]], 1) for k in range(4)]
-    light = np.concatenate(corners)
-    fill = [
-        plot.shade(points, black, to_rgb("#6f8fbf"), depth=0.3),
-        plot.shade(points, light, depth=0.2),
-    ]
-    families = mesh.polylines(Q)._asdict()
-    lines = [(V[c], plot.COLOURS[name], 0.9) for name in ("u", "v") for c in families[name]]
+    points, black, light = plot.cells(V, Q)
+    fill = [plot.shade(points, black, plot.DARK, depth=0.3), plot.shade(points, light, depth=0.2)]
+    lines = plot.families(V, Q, {"u": 0.9, "v": 0.9})
     plot.scene(ax, view, points, np.concatenate([black, light]), np.concatenate(fill), lines)
 
 
-def _parallelogram(ax, rho, degrees):
+def abcd(ax, rho, angles):
     """Diagonals X_u and X_v = rho X_u, sides Y_u / 2 and Y_v / 2, and both angles."""
     corners = np.array([-1, -rho, 1, rho]) / (2 * max(1, abs(rho)))
     left, low, right, top = plot.plane(corners)
@@ -96,8 +84,8 @@ def _parallelogram(ax, rho, degrees):
     plot.vector(ax, low, top, colours["v"])
     plot.angle(ax, left, low - left, top - left, 0.13)
     plot.angle(ax, np.zeros(2), right, top, 0.1)
-    _text(ax, left, 0.28, low - left, right, rf"${degrees[0]}\degree$")
-    _text(ax, np.zeros(2), 0.18, right, top, rf"${degrees[1]}\degree$")
+    _text(ax, left, 0.28, low - left, right, rf"${angles[0] / DEGREE:.4g}\degree$")
+    _text(ax, np.zeros(2), 0.18, right, top, rf"${angles[1] / DEGREE:.4g}\degree$")
     _text(ax, right, 0.1, right, right, "$X_u$")
     _text(ax, top, 0.1, top, top, "$X_v$")
     _text(ax, (left + low) / 2, 0.13, low + left, low + left, "$Y_u/2$")

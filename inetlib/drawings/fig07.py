@@ -1,9 +1,9 @@
 """Fig. 7: a planar sheared grid and developable surfaces that it is bent into."""
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
-from .. import conformal, developable, mesh, plot, publish
+from .. import conformal, developable, plot, publish
+from ..plot import DEGREE
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
 HIGH = 8.2  # columns are as wide as a panel is high
@@ -22,24 +22,33 @@ TITLES = {
 }
 
 
-def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth=-90, elevation=20):
+@publish.drawn
+def draw(
+    theta=60 * DEGREE,
+    theta0=45 * DEGREE,
+    cells=8,
+    geodesic=GEODESIC,
+    edited=EDITED,
+    azimuth=-90 * DEGREE,
+    elevation=20 * DEGREE,
+):
     """One net in the plane, rolled up in four steps, on a cone and along a space curve.
 
-    theta, theta0: angles of the net, degrees; cells: faces each way, those along u close
+    theta, theta0: angles of the net, radians; cells: faces each way, those along u close
     around the cylinder of curvature k = 1; geodesic, edited: control points, scaled to the
     length of the diagonal of the net, which becomes that curve; azimuth, elevation: the
-    camera, degrees.  Returns a `publish.Drawing`.
+    camera, radians.
 
     Paper: Fig. 7.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     z = conformal.sheared_grid(*asked, cells, cells, edge=2 * np.pi / cells)
     z = z - z.mean()
     maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")}
     maps |= {"F": _cone(z), "G": _along(z, geodesic)[0]}
     maps["H"] = _along(z, edited)[0]
     figure, axes = plot.canvas(_columns(), 7.6, 3.6)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     data, claims, nets = _stages(maps, z, asked)
     for name, bend in maps.items():
         _sheet(axes[name], view, bend, z)
@@ -47,12 +56,7 @@ def draw(theta=60, theta0=45, cells=8, geodesic=GEODESIC, edited=EDITED, azimuth
     for name, points in (("G", geodesic), ("H", edited)):
         _polygon(axes[name], view, _along(z, points)[1])
     _same_scale(axes)
-    parameters = {"theta": theta, "theta0": theta0, "cells": cells, "azimuth": azimuth}
-    parameters |= {"elevation": elevation, "geodesic": [list(p) for p in geodesic]}
-    parameters["edited"] = [list(p) for p in edited]
-    return publish.Drawing(
-        "fig07", figure, "inetlib.drawings.fig07.draw", parameters, data, nets, claims
-    )
+    return figure, data, nets, claims
 
 
 def _stages(maps, z, asked):
@@ -61,8 +65,7 @@ def _stages(maps, z, asked):
     data, claims = {"domain": domain}, {}
     for name, bend in maps.items():
         data[f"net_{name}"] = bend(z).reshape(-1, 3)
-        off = max(publish.deviations([(data[f"net_{name}"], Q, *asked)]))
-        claims[f"chords_{name}_max_deviation_deg"] = round(off, 6) + 0.0
+        claims[f"chords_{name}_max_deviation_deg"] = publish.off(data[f"net_{name}"], Q, asked)
         stretch = [
             np.linalg.norm(developable.tangent(bend, z, edge / abs(edge)), axis=-1)
             for edge in (z[1, 0] - z[0, 0], z[0, 1] - z[0, 0])
@@ -98,13 +101,9 @@ def _along(z, points):
 def _sheet(ax, view, bend, z):
     """Black quads dark, the rest light, u- and v-curves, and the diagonal of the net."""
     V, Q = conformal.quads(z)
-    board = mesh.checkerboard(V, Q)
-    flat, black = np.concatenate([V, board.V]), board.black + len(V)
+    flat, black, light = plot.cells(V, Q, white=True)
     points = bend(flat[:, 0] + 1j * flat[:, 1])
-    rim = np.bincount(Q.ravel())[Q] < 4  # the white quads leave triangles along the rim
-    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)[rim]
-    light = np.concatenate([board.white + len(V), corners])
-    shades = [plot.shade(points, black, to_rgb("#6f8fbf"), LIGHT, 0.4)]
+    shades = [plot.shade(points, black, plot.DARK, LIGHT, 0.4)]
     shades += [plot.shade(points, light, light=LIGHT, depth=0.25)]
     lines = [
         (bend(_halves(line)), plot.COLOURS[name], 0.7)

@@ -2,48 +2,40 @@
 
 import numpy as np
 
-from .. import mesh, parallelogram, plot, publish, surfaces
-from . import _isothermal
+from .. import parallelogram, plot, publish, surfaces
+from ..plot import DEGREE
+from . import isothermal
 
 
-def draw(around=20, rows=8, azimuth=-80, elevation=20):
+@publish.drawn
+def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 
     around: squares of a full turn of the catenoid; rows: of squares; azimuth, elevation: the
-    camera, degrees.  Returns a `publish.Drawing`.
+    camera, radians.
 
     Paper: Fig. 8.
     """
     figure, axes = plot.canvas([["A", "B"]], 7.2, 3.3, ratios=[1, 1.1])
     _squares(axes["A"])
     step = 2 * np.pi / around
-    z = _isothermal.domain(rows, around, step, 1j * step * rows / 2)
-    V, Q = _isothermal.sample(surfaces.CATENOID, z)
-    _surface(axes["B"], plot.camera(*np.radians([azimuth, elevation])), V, Q)
+    z = isothermal.domain(rows, around, step, 1j * step * rows / 2)
+    V, Q = isothermal.sample(surfaces.CATENOID, z)
+    _surface(axes["B"], plot.camera(azimuth, elevation), V, Q)
     for ax in axes.values():
         ax.set_anchor("N")
     plot.panel(axes["A"], "A", "in two squares of the $(u, v)$ plane")
     plot.panel(axes["B"], "B", "on a catenoid")
-    lam, mu = parallelogram.ratios(*_isothermal.ANGLES)
+    lam, mu = parallelogram.ratios(*isothermal.ANGLES)
     claims = {
         "lam_squared": round(float(lam**2), 9),
         "mu_squared": round(float(mu**2), 9),
-        "theta_deg": round(float(np.degrees(_isothermal.ANGLES[0])), 9),
-        "theta0_deg": round(float(np.degrees(_isothermal.ANGLES[1])), 9),
+        "theta_deg": round(float(np.degrees(isothermal.ANGLES[0])), 9),
+        "theta0_deg": round(float(np.degrees(isothermal.ANGLES[1])), 9),
     }
-    off = max(publish.deviations([(V, Q, *_isothermal.ANGLES)]))
-    claims["sampled_net_max_deviation_deg"] = round(off, 6)
-    parameters = {"around": around, "rows": rows, "azimuth": azimuth, "elevation": elevation}
+    claims["sampled_net_max_deviation_deg"] = publish.off(V, Q, isothermal.ANGLES)
     flat = np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], axis=1)
-    return publish.Drawing(
-        "fig08",
-        figure,
-        "inetlib.drawings.fig08.draw",
-        parameters,
-        {"net": V, "domain": flat},
-        [(flat, Q, *_isothermal.ANGLES)],
-        claims,
-    )
+    return figure, {"net": V, "domain": flat}, [(flat, Q, *isothermal.ANGLES)], claims
 
 
 def _squares(ax):
@@ -65,7 +57,7 @@ def _squares(ax):
     flat = plot.plane
     plot.angle(ax, flat(p12), flat(p23 - p12), flat(p41 - p12), 0.13)
     plot.angle(ax, flat(1 + 0.5j), flat(p41 - p23), flat(p34 - p12), 0.3)
-    theta, theta0 = np.degrees(_isothermal.ANGLES)
+    theta, theta0 = np.degrees(isothermal.ANGLES)
     _text(ax, 0.608 + 0.785j, rf"${theta:.2f}\degree$", 7)
     _text(ax, 1.385 + 0.425j, rf"${theta0:.0f}\degree$")
     for place, k in ((1 + 1.09j, 1), (1.09j, 2), (1 - 0.1j, 3), (2 - 0.1j, 4)):
@@ -81,12 +73,9 @@ def _text(ax, place, text, size=8):
 
 def _surface(ax, view, V, Q):
     """The net with its parallelograms dark, the squares' other edges thin and grey."""
-    board = mesh.checkerboard(V, Q)
-    points, black = np.concatenate([V, board.V]), board.black + len(V)
-    corners = [np.stack([black[:, k - 1], Q[:, k], black[:, k], black[:, k]], 1) for k in range(4)]
-    light = np.concatenate(corners)
-    dark = plot.shade(points, black, "#6f8fbf", depth=0.3)
+    points, black, light = plot.cells(V, Q)
+    dark = plot.shade(points, black, plot.DARK, depth=0.3)
     fill = np.concatenate([dark, plot.shade(points, light, depth=0.2)])
-    lines = _isothermal.coloured(V, Q, {"d1": 0.5, "v": 1.0, "u": 1.0})
+    lines = plot.families(V, Q, {"d1": 0.5, "v": 1.0, "u": 1.0})
     lines = [(p, plot.GREY if w == 0.5 else c, w) for p, c, w in lines]
     plot.scene(ax, view, points, np.concatenate([black, light]), fill, lines)

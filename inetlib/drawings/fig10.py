@@ -3,48 +3,45 @@
 import numpy as np
 
 from .. import moebius, plot, publish, surfaces
-from . import _isothermal
+from ..plot import DEGREE
+from . import isothermal
 
 
-def draw(around=24, rows=8, top=3, azimuth=-90, elevation=22):
+@publish.drawn
+def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 
     around: steps of a full turn; rows: of the net; top: its uppermost parallel, in steps
-    above the equator; azimuth, elevation: the camera, degrees.  Returns a `publish.Drawing`.
+    above the equator; azimuth, elevation: the camera, radians.
 
     Paper: Fig. 10.
     """
     figure, axes = plot.canvas([["A", "A'"]], 6.6, 3.2)
     step = 2 * np.pi / around
-    z = _isothermal.domain(rows, around, step, 1j * top * step)
-    line = _isothermal.refined(z[:, around * 7 // 10])
-    V, Q = _isothermal.sample(surfaces.SPHERE, z)
+    z = isothermal.domain(rows, around, step, 1j * top * step)
+    line = isothermal.refined(z[:, around * 7 // 10])
+    V, Q = isothermal.sample(surfaces.SPHERE, z)
     curve = surfaces.SPHERE.point(line.real, line.imag)
     flat, flat_curve = moebius.stereographic(V), moebius.stereographic(curve)
     W = np.stack([flat.real, flat.imag, 0 * flat.real], axis=1)
-    _sphere(axes["A"], plot.camera(*np.radians([azimuth, elevation])), V, Q, curve)
+    _sphere(axes["A"], plot.camera(azimuth, elevation), V, Q, curve)
     _plane(axes["A'"], W, Q, flat_curve)
     plot.panel(axes["A"], "A", "on the unit sphere")
     plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
     claims = {}
     for name, points in (("sphere", V), ("plane", W)):
-        off = max(publish.deviations([(points, Q, *_isothermal.ANGLES)]))
-        claims[f"sampled_net_{name}_max_deviation_deg"] = round(off, 6)
-    parameters = {"around": around, "rows": rows, "top": top}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig10",
+        off = publish.off(points, Q, isothermal.ANGLES)
+        claims[f"sampled_net_{name}_max_deviation_deg"] = off
+    return (
         figure,
-        "inetlib.drawings.fig10.draw",
-        parameters,
         {"sphere": V, "plane": W},
-        [(np.stack([z.real.ravel(), z.imag.ravel(), 0 * W[:, 0]], 1), Q, *_isothermal.ANGLES)],
+        [(np.stack([z.real.ravel(), z.imag.ravel(), 0 * W[:, 0]], 1), Q, *isothermal.ANGLES)],
         claims,
     )
 
 
 def _sphere(ax, view, V, Q, curve):
-    lines = _isothermal.coloured(V, Q, {"v": 0.7, "u": 0.7})
+    lines = plot.families(V, Q, {"v": 0.7, "u": 0.7})
     lines.append((curve, plot.COLOURS["u"], 2.6))
     plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
     outline = np.exp(2j * np.pi * np.arange(181) / 180)

@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.patheffects import withStroke
 
 from .. import loxodrome, measure, parallelogram, plot, publish, surfaces
+from ..plot import DEGREE
 from . import revolution
 
 STRIP = to_rgb("#9db9de")
@@ -12,21 +13,29 @@ HALO = [withStroke(linewidth=2.2, foreground="white")]
 TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
 
 
-def draw(theta=75, theta0=60, m=18, profile=None, azimuth=54, elevation=24):
+@publish.drawn
+def draw(
+    theta=75 * DEGREE,
+    theta0=60 * DEGREE,
+    m=18,
+    profile=None,
+    azimuth=54 * DEGREE,
+    elevation=24 * DEGREE,
+):
     """A strip between two loxodromes, the exact DI-net of all strips, and its 4-web.
 
-    theta, theta0: degrees; m: quads around the axis; profile: a `surfaces.Profile`, default
-    the vase; azimuth, elevation: the camera, degrees, A at azimuth 0 (take a negative
-    azimuth for theta0 > 90).  Returns a `publish.Drawing`.
+    theta, theta0: radians; m: quads around the axis; profile: a `surfaces.Profile`, default
+    the vase; azimuth, elevation: the camera, radians, A at azimuth 0 (take a negative
+    azimuth for obtuse theta0).
 
     Paper: Fig. 11.
     """
-    asked = np.radians([theta, theta0])
+    asked = theta, theta0
     net = loxodrome.web(profile or surfaces.vase_profile(), *asked, m)
     figure, axes = plot.canvas([list("ABC"), list("abc")], 7.0, 5.8)
     axes["A"].get_gridspec().set_height_ratios([2.3, 1])
     figure.get_layout_engine().set(h_pad=0.1)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     _strip(axes["A"], view, net)
     revolution.black_quads(axes["B"], view, net)
     revolution.web(axes["C"], view, net, ("u", "v", "d1", "d2"))
@@ -40,17 +49,7 @@ def draw(theta=75, theta0=60, m=18, profile=None, azimuth=54, elevation=24):
     lam, mu = measure.ratios(net.V, net.Q)
     claims = {"rows": int(net.rows), "lam": round(float(lam[0]), 9), "mu": round(float(mu[0]), 9)}
     claims |= {"flips": int(measure.quality(net.V, net.Q).flips)}
-    parameters = {"theta": theta, "theta0": theta0, "m": m}
-    parameters |= {"azimuth": azimuth, "elevation": elevation}
-    return publish.Drawing(
-        "fig11",
-        figure,
-        "inetlib.drawings.fig11.draw",
-        parameters,
-        {"net": net.V},
-        [(net.V, net.Q, *asked)],
-        claims,
-    )
+    return figure, {"net": net.V}, [(net.V, net.Q, *asked)], claims
 
 
 # --- the surface ----------------------------------------------------------------------------
@@ -123,16 +122,22 @@ def _inside(ax, corners, theta, theta0):
     """Its parallelogram: the angle theta between the sides, theta0 between the diagonals."""
     c, middle = plot.COLOURS, (corners + np.roll(corners, -1, axis=0)) / 2
     left, low, right, top = 1.35 * middle
-    plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], revolution.DARK, zorder=0)
+    plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], plot.DARK, zorder=0)
     plot.curves(ax, [[left, low], [right, top]], c["d1"], 2)
     plot.curves(ax, [[left, top], [low, right]], c["d2"], 2)
     plot.curves(ax, [[left, right]], c["u"], 2)
     plot.curves(ax, [[low, top]], c["v"], 2)
     plot.angle(ax, left, low - left, top - left, 0.2)
     plot.angle(ax, np.zeros(2), right, top, 0.16)
-    ax.text(left[0] - 0.05, left[1], rf"${theta}\degree$", ha="right", va="center")
+    ax.text(left[0] - 0.05, left[1], rf"${theta / DEGREE:.4g}\degree$", ha="right", va="center")
     half = right / np.linalg.norm(right) + top / np.linalg.norm(top)
-    ax.text(*(0.18 * half), rf"${theta0}\degree$", ha="center", va="center", path_effects=HALO)
+    ax.text(
+        *(0.18 * half),
+        rf"${theta0 / DEGREE:.4g}\degree$",
+        ha="center",
+        va="center",
+        path_effects=HALO,
+    )
     text = r"sides: $\theta$, diagonals: $\theta_0$"
     ax.text(0, -0.72, text, ha="center", va="center")
     _frame(ax)

@@ -4,14 +4,16 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from .. import measure, plot, publish, reference, solver, surfaces, ties
-from . import _optimised
+from ..plot import DEGREE
+from . import patches
 
-SETTINGS = {  # degrees; what is not given is found
+RIGHT, SIXTY = 90 * DEGREE, 60 * DEGREE
+SETTINGS = {  # what is not given is found
     "A": {},
-    "B": {"theta": 90},
-    "C": {"theta0": 90},
-    "D": {"theta": 90, "theta0": 90},
-    "E": {"theta": 60, "theta0": 60},
+    "B": {"theta": RIGHT},
+    "C": {"theta0": RIGHT},
+    "D": {"theta": RIGHT, "theta0": RIGHT},
+    "E": {"theta": SIXTY, "theta0": SIXTY},
 }
 ITERATIONS = {"A": 12, "B": 17, "C": 17, "D": 17, "E": 17}  # of the paper's formulation
 TITLES = {
@@ -23,7 +25,7 @@ TITLES = {
 }
 
 
-def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
+def nets(formulation="ratio", m=20, n=20, weights=patches.WEIGHTS):
     """The start and the five nets: (V, Q, {"A": `solver.Result`, ... "E"}).
 
     formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations and
@@ -39,7 +41,7 @@ def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
         found[letter] = solver.optimize(
             V,
             Q,
-            **{name: np.radians(x) for name, x in angles.items()},
+            **angles,
             reference=near,
             weights=weights,
             formulation=formulation,
@@ -48,45 +50,37 @@ def nets(formulation="ratio", m=20, n=20, weights=_optimised.WEIGHTS):
     return V, Q, found
 
 
-def draw(m=20, n=20, azimuth=-62, elevation=42):
+@publish.drawn
+def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """A patch and the five isogonal nets it is optimised to, with their parallelograms.
 
-    m, n: quads each way; azimuth, elevation: the camera, degrees.  The start is coloured by
+    m, n: quads each way; azimuth, elevation: the camera, radians.  The start is coloured by
     the larger deviation of theta and theta0 from their means.  Each panel shows four faces
-    enlarged.  Returns a `publish.Drawing`.
+    enlarged.
 
     Paper: Fig. 12.
     """
     V, Q, found = nets(m=m, n=n)
     figure, axes = plot.canvas([["start", "A", "B"], ["C", "D", "E"]], 7.4, 5.8)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     at = _four(m, n)
-    off = _deviation(V, Q)
+    off = np.degrees(measure.deviations(V, Q).max(axis=0))  # from their means
     scale = Normalize(0, ties.next_multiple(off.max(), 5))
-    _panel(axes["start"], view, V, Q, at, _optimised.DEVIATION(scale(off))[:, :3])
+    _panel(axes["start"], view, V, Q, at, patches.DEVIATION(scale(off))[:, :3])
     axes["start"].set_title("the start", loc="left")
-    _optimised.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])
+    patches.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])
     for letter, result in found.items():
         _panel(axes[letter], view, result.V, Q, at)
         plot.panel(axes[letter], letter, TITLES[letter])
         _words(axes[letter], letter, result)
-    _optimised.align(list(axes.values()), 0.42)
-    parameters = {"m": m, "n": n, "azimuth": azimuth, "elevation": elevation}
+    patches.align(list(axes.values()), 0.42)
     data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
-    return publish.Drawing(
-        "fig12",
+    return (
         figure,
-        "inetlib.drawings.fig12.draw",
-        parameters,
         data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
-        _optimised.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
+        patches.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
     )
-
-
-def _deviation(V, Q):
-    """The larger deviation of theta and theta0 of each face from the means, degrees."""
-    return np.degrees(np.max([np.abs(x - x.mean()) for x in measure.angles(V, Q)], axis=0))
 
 
 def _four(m, n):
@@ -95,10 +89,10 @@ def _four(m, n):
     return (i * n + j).ravel()
 
 
-def _panel(ax, view, V, Q, at, colours=_optimised.EXACT):
-    _optimised.surface(ax, view, V, Q, colours, [_optimised.outline(V, Q[at])])
+def _panel(ax, view, V, Q, at, colours=patches.EXACT):
+    patches.surface(ax, view, V, Q, colours, [patches.outline(V, Q[at])])
     four = colours if isinstance(colours, str) else colours[at]
-    _optimised.enlarged(_optimised.inset(ax, [0, 0, 0.42, 0.33]), V, Q, at, four)
+    patches.enlarged(patches.inset(ax, [0, 0, 0.42, 0.33]), V, Q, at, four)
 
 
 def _words(ax, letter, result):

@@ -4,9 +4,11 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from .. import measure, mesh, moebius, plot, publish, reference, solver, ties
-from . import _optimised
+from ..plot import DEGREE
+from . import patches
 
-SETTINGS = {"A": {"theta": 60, "theta0": 60}, "B": {"theta": 60, "theta0": 45}}  # degrees
+SIXTY = 60 * DEGREE
+SETTINGS = {"A": {"theta": SIXTY, "theta0": SIXTY}, "B": {"theta": SIXTY, "theta0": 45 * DEGREE}}
 ITERATIONS = {"A": 12, "B": 12}  # of the paper's formulation
 SIDES, RINGS = 6, 8
 CENTRE, RADIUS = (-0.2, 0.1, -0.25), 0.3
@@ -29,7 +31,7 @@ def start(dome=0.45, wave=0.1):
     return V / np.linalg.norm(np.ptp(V, axis=0)), Q, polygon
 
 
-def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
+def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
     """The start and the two nets: (V, Q, polygon, {"A": `solver.Result`, "B"}).
 
     formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations.  The
@@ -44,7 +46,7 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
         found[letter] = solver.optimize(
             V,
             Q,
-            *np.radians([angles["theta"], angles["theta0"]]),
+            **angles,
             reference=near,
             weights=weights,
             polygons=[polygon],
@@ -54,68 +56,61 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=_optimised.WEIGHTS):
     return V, Q, polygon, found
 
 
-def draw(dome=0.45, wave=0.1, azimuth=-75, elevation=50):
+@publish.drawn
+def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
 
-    dome, wave: of the `start`; azimuth, elevation: the camera, degrees.  The images keep the
+    dome, wave: of the `start`; azimuth, elevation: the camera, radians.  The images keep the
     connectivity, and the angles up to the size of the quads: they are coloured by the larger
-    deviation of theta and theta0 from those of the net.  Returns a `publish.Drawing`.
+    deviation of theta and theta0 from those of the net.
 
     Paper: Fig. 13.
     """
     V, Q, polygon, found = nets(dome=dome, wave=wave)
     figure, axes = plot.canvas([["start", "A", "B"], ["steps", "A'", "B'"]], 7.4, 5.6)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     images = {k: moebius.apply(moebius.inversion(CENTRE, RADIUS), r.V) for k, r in found.items()}
-    off = {k: _deviation(images[k], Q, r) for k, r in found.items()}
+    off = {
+        k: np.degrees(measure.deviations(images[k], Q, r.theta, r.theta0).max(axis=0))
+        for k, r in found.items()
+    }
     scale = Normalize(0, ties.next_multiple(max(x.max() for x in off.values()), 0.1))
     four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
     axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")
     for letter, result in found.items():
         _net(axes[letter], view, result.V, Q, polygon, marked=four)
-        _optimised.enlarged(_optimised.inset(axes[letter], [0.5, 0, 0.5, 0.27]), result.V, Q, four)
+        patches.enlarged(patches.inset(axes[letter], [0.5, 0, 0.5, 0.27]), result.V, Q, four)
         plot.panel(axes[letter], letter, _words(**SETTINGS[letter]))
-        colours = _optimised.DEVIATION(scale(off[letter]))[:, :3]
+        colours = patches.DEVIATION(scale(off[letter]))[:, :3]
         _net(axes[letter + "'"], view, images[letter], Q, polygon, colours)
         plot.panel(axes[letter + "'"], letter + "'", f"Moebius image of {letter}")
     _history(axes["steps"], found)
-    _optimised.bar(axes["A'"], scale, [0.68, 0.9, 0.6, 0.035])
-    _optimised.align([axes[k] for k in ("start", "A", "B")], 0.15)
-    _optimised.align([axes[k] for k in ("A'", "B'")], 0.1)
+    patches.bar(axes["A'"], scale, [0.68, 0.9, 0.6, 0.035])
+    patches.align([axes[k] for k in ("start", "A", "B")], 0.15)
+    patches.align([axes[k] for k in ("A'", "B'")], 0.1)
     numbers = {f"{k}'_max_deviation_deg": round(float(x.max()), 6) for k, x in off.items()}
     data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
     data |= {f"image_{k}": W for k, W in images.items()}
-    return publish.Drawing(
-        "fig13",
+    return (
         figure,
-        "inetlib.drawings.fig13.draw",
-        {"dome": dome, "wave": wave, "azimuth": azimuth, "elevation": elevation},
         data,
         [(r.V, Q, r.theta, r.theta0) for r in found.values()],
-        _optimised.claims(found, Q) | numbers,
+        patches.claims(found, Q) | numbers,
     )
 
 
-def _deviation(V, Q, result):
-    """The larger deviation of theta and theta0 of each face from those of the net, degrees."""
-    asked = result.theta, result.theta0
-    off = [np.abs(x - a) for x, a in zip(measure.angles(V, Q), asked, strict=True)]
-    return np.degrees(np.max(off, axis=0))
-
-
 def _words(theta, theta0):
-    if theta == theta0:
-        return rf"$\theta=\theta_0={theta}\degree$"
-    return rf"$\theta={theta}\degree,\ \theta_0={theta0}\degree$"
+    one, two = (f"{x / DEGREE:.4g}\\degree" for x in (theta, theta0))
+    return rf"$\theta=\theta_0={one}$" if one == two else rf"$\theta={one},\ \theta_0={two}$"
 
 
-def _net(ax, view, V, Q, polygon, colours=_optimised.EXACT, marked=()):
+def _net(ax, view, V, Q, polygon, colours=patches.EXACT, marked=()):
     corners = V[polygon]
     lines = [(np.concatenate([corners, corners[:1]]), plot.INK, 1.0)]
     if len(marked):
-        lines.append(_optimised.outline(V, Q[marked]))
-    _optimised.surface(ax, view, V, Q, colours, lines, [(corners, HEXAGON)])
+        lines.append(patches.outline(V, Q[marked]))
+    patches.surface(ax, view, V, Q, colours, lines, [(corners, HEXAGON)])
 
 
 def _history(ax, found):

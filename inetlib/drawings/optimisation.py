@@ -5,10 +5,11 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from .. import measure, mesh, plot, reference, solver, surfaces
+from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import _optimised
+from . import patches
 
-CAMERA = -62, 42
+CAMERA = -62 * DEGREE, 42 * DEGREE
 FLOOR = 1e-12  # below is rounding
 LITTLE = Weights(fairness=0.002, closeness=0.001, approximation=0, boundary=0)
 ENERGIES = {  # one energy after the other made strong, all with the same angles
@@ -31,7 +32,7 @@ def energies(theta=np.pi / 2):
     near = reference.mesh(V, Q)
     lines = [["start", 0, *_numbers(V, Q, near)]]
     figure, axes = plot.canvas([["start", *list(ENERGIES)[:2]], list(ENERGIES)[2:]], 7.4, 4.4)
-    view = plot.camera(*np.radians(CAMERA))
+    view = plot.camera(*CAMERA)
     nets = {"start": V}
     for name, weights in ENERGIES.items():
         more = {"shape_steps": 0} if weights is None else {"weights": weights, "shape_steps": 4}
@@ -39,7 +40,7 @@ def energies(theta=np.pi / 2):
         nets[name] = found.V
         lines.append([name, len(found.history) - 1, *_numbers(found.V, Q, near)])
     for name, points in nets.items():
-        _optimised.surface(axes[name], view, points, Q)
+        patches.surface(axes[name], view, points, Q)
         axes[name].set_title(name, loc="left")
     return figure, lines
 

@@ -5,6 +5,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from .. import measure, plot
+from ..plot import DEGREE
 
 MAP = "cividis"
 
@@ -25,14 +26,14 @@ def warps(V, Q):
     return 2 * apart / (np.linalg.norm(d1, axis=1) + np.linalg.norm(d2, axis=1))
 
 
-def panels(V, Q, curves, azimuth=-62, elevation=42):
+def panels(V, Q, curves, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """Three pictures of a net: sizes, planarity, and a motif (see `motif.place`) in every quad.
 
-    curves: placed ones, a list of (f, k, 3); azimuth, elevation: the camera, degrees.
+    curves: placed ones, a list of (f, k, 3); azimuth, elevation: the camera, radians.
     Returns the figure.
     """
     figure, axes = plot.canvas([["size", "planarity", "motif"]], 7.4, 3.1)
-    view = plot.camera(*np.radians([azimuth, elevation]))
+    view = plot.camera(azimuth, elevation)
     values = {"size": sizes(V, Q), "planarity": warps(V, Q)}
     for name, numbers in values.items():
         scale = Normalize(numbers.min(), numbers.max())

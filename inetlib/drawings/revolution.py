@@ -4,11 +4,9 @@ A net here is one of `loxodrome.web`: it has V, Q, families and rows.
 """
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from .. import measure, mesh, plot, ties
 
-DARK = to_rgb("#6f8fbf")
 SLOTS = {"u": [(1, 2), (0, 3)], "v": [(1, 0), (2, 3)], "d1": [(0, 2)], "d2": [(1, 3)]}
 
 
@@ -26,11 +24,8 @@ def web(ax, view, net, families=("u", "v", "d1", "d2"), width=0.8):
 def black_quads(ax, view, net, width=0.7):
     """The inscribed parallelograms and the edges of a web's quads; arguments as in `web`."""
     Q = net.Q[facing(view, net.V, net.Q)]
-    board = mesh.checkerboard(net.V, Q)
-    points, black = np.concatenate([net.V, board.V]), board.black + len(net.V)
-    corners = [np.stack([black[:, k - 1], Q[:, k], black[:, k], black[:, k]], 1) for k in range(4)]
-    light = np.concatenate(corners)
-    fill = [plot.shade(points, black, DARK, depth=0.3), plot.shade(points, light, depth=0.2)]
+    points, black, light = plot.cells(net.V, Q)
+    fill = [plot.shade(points, black, plot.DARK, depth=0.3), plot.shade(points, light, depth=0.2)]
     outside = points, np.concatenate([black, light])
     paint(ax, view, net, outside, np.concatenate(fill), lines(net.V, Q, "uv", width))
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import measure, publish
 from ..solver.problem import PAPER
-from . import _optimised, fig12, fig13
+from . import fig12, fig13, patches
 
 # F, #var, #cons, residual, iterations, seconds per iteration
 PRINTED = {
@@ -25,8 +25,8 @@ HEADER = [
 ]
 VARIANTS = {  # formulation and weights
     "paper's, printed weights": ("paper, splu", PAPER),
-    "paper's, small weights": ("paper, splu", _optimised.WEIGHTS),
-    "ratios": ("ratio", _optimised.WEIGHTS),
+    "paper's, small weights": ("paper, splu", patches.WEIGHTS),
+    "ratios": ("ratio", patches.WEIGHTS),
 }
 NOISE = 1e-20  # residuals below are rounding errors
 

@@ -5,7 +5,7 @@ Lines are drawn in the page's own colours: `currentColor`, and the classes u, v,
 
 import numpy as np
 
-from ..drawings._parallelogram import corners
+from ..drawings.abcd import corners
 from .choices import HEIGHTS
 
 BOX = 270, 150  # of the parallelogram and the histograms, in pixels

@@ -6,15 +6,14 @@ from scipy.sparse import csr_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from inetlib import mesh, surfaces
-from inetlib.solver import residuals as constraints
-from inetlib.solver import sparse
+from inetlib.solver import residuals, sparse
 
 RANDOM = np.random.default_rng(5)
 
 
 def system(V, Q):
     """The matrix of a smallest step, with the centres of the faces."""
-    _, jacobian = constraints.log_ratios(V[Q].reshape(-1, 12))
+    _, jacobian = residuals.log_ratios(V[Q].reshape(-1, 12))
     J = sparse.rows(jacobian, sparse.coordinates(Q), V.size)
     S = J @ J.T
     return V[Q].mean(axis=1), S + 1e-9 * S.diagonal().mean() * eye_array(S.shape[0])

@@ -25,20 +25,14 @@ def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=(), width=0.45, li
     view: a `plot.camera`; colours: one, or RGB for each quad; lines: as for `plot.scene`;
     polygons: (corners (k, 3), colour) of further faces.
     """
-    board = mesh.checkerboard(V, Q)
-    points, black = np.concatenate([V, board.V]), board.black + len(V)
-    rim = np.bincount(Q.ravel())[Q] < 4  # the white quads leave triangles along the rim
-    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)[rim]
-    pale = np.concatenate([board.white + len(V), corners])
+    points, black, pale = plot.cells(V, Q, white=True)
     fill = [shaded(points, black, colours, light), shaded(points, pale, "#f0f2f5", light, 0.3)]
     faces = np.concatenate([black, pale])
     for corners, colour in polygons:  # as thin triangles from the middle
         extra, fan = _fan(corners, len(points))
         points, faces = np.concatenate([points, extra]), np.concatenate([faces, fan])
         fill.append(shaded(points, fan, colour, light, 0.2))
-    families = mesh.polylines(Q)._asdict()
-    both = [(V[c], plot.COLOURS[k], width) for k in "uv" for c in families[k]]
-    fill = np.concatenate(fill)
+    both, fill = plot.families(V, Q, {"u": width, "v": width}), np.concatenate(fill)
     plot.scene(ax, view, points, faces, fill, [*both, *lines], lift=0.003).set_clip_on(False)
 
 

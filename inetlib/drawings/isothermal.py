@@ -9,7 +9,7 @@ Paper: Fig. 8, Fig. 9, Fig. 10.
 
 import numpy as np
 
-from .. import conformal, mesh, plot
+from .. import conformal, mesh
 
 ANGLES = np.arccos(1 / np.sqrt(5)), np.pi / 4
 
@@ -35,9 +35,3 @@ def refined(line, k=6):
     s = np.arange((len(line) - 1) * k + 1) / k
     index = np.arange(len(line))
     return np.interp(s, index, line.real) + 1j * np.interp(s, index, line.imag)
-
-
-def coloured(V, Q, widths):
-    """Lines for `plot.scene`: each family named in `widths` {family: width} in its colour."""
-    families = mesh.polylines(Q)._asdict()
-    return [(V[c], plot.COLOURS[k], w) for k, w in widths.items() for c in families[k]]
