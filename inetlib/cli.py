@@ -17,7 +17,7 @@ import warnings
 import webbrowser
 from pathlib import Path
 
-from . import __version__, files, start
+from . import __version__, files
 
 DONE, NOT_FOUND, WRONG, STOPPED = 0, 1, 2, 130
 ROOT = Path(__file__).resolve().parent.parent
@@ -94,7 +94,8 @@ def main(arguments: list[str] | None = None) -> int:
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
-        return _tell(start.stopped(given.command, written), STOPPED)
+        quiet = given.command in ("figures", "explore") or len(files.WRITTEN) > written
+        return _tell("stopped" + ", nothing was written" * (not quiet), STOPPED)
     except BrokenPipeError:  # the reader of our output went away, for example `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
@@ -141,18 +142,18 @@ def _number(wanted, allowed, made=float):
     return read
 
 
-angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180, math.radians)
-turn = _number("a finite number", lambda x: True, math.radians)
-tolerance = _number("a positive number", lambda x: x > 0, math.radians)
-positive = _number("a positive number", lambda x: x > 0)
-whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
-port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
+_angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180, math.radians)
+_turn = _number("a finite number", lambda x: True, math.radians)
+_tolerance = _number("a positive number", lambda x: x > 0, math.radians)
+_positive = _number("a positive number", lambda x: x > 0)
+_whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
+_port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
 
 
 def _angle_options(command, words, required=False):
     for name, what in (("--theta", "the diagonals"), ("--theta0", "the medial lines")):
         text = f"angle between {what}, degrees{words}"
-        command.add_argument(name, type=angle, metavar="DEG", required=required, help=text)
+        command.add_argument(name, type=_angle, metavar="DEG", required=required, help=text)
 
 
 def _write_options(command, keep):
@@ -163,7 +164,9 @@ def _write_options(command, keep):
     command.add_argument("--force", action="store_true", help="replace the file if it is there")
     if keep:
         text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
-        command.add_argument("--tolerance", type=tolerance, default=least, metavar="DEG", help=text)
+        command.add_argument(
+            "--tolerance", type=_tolerance, default=least, metavar="DEG", help=text
+        )
         text = "write the best net even if it is off its angles"
         command.add_argument("--keep", action="store_true", help=text)
     _say_options(command)
@@ -201,12 +204,12 @@ def _cover_options(command):
     _angle_options(command, "", required=True)
     size = command.add_mutually_exclusive_group()
     text = "about so many quads (%(default)s)"
-    size.add_argument("--quads", type=whole, default=1500, metavar="N", help=text)
+    size.add_argument("--quads", type=_whole, default=1500, metavar="N", help=text)
     text = "or: the mean edge, in the unit of the surface's file"
-    size.add_argument("--size", type=positive, help=text)
+    size.add_argument("--size", type=_positive, help=text)
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
-    command.add_argument("--direction", type=turn, default=0.0, metavar="DEG", help=text)
+    command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
     _write_options(command, keep=True)
 
 
@@ -245,8 +248,8 @@ def _web_options(command):
         height in each row"""
     command.add_argument("--profile", required=True, help=text)
     _angle_options(command, "", required=True)
-    command.add_argument("-m", type=whole, required=True, help="quads around the axis")
-    command.add_argument("-n", type=whole, metavar="ROWS", help="rows (as many as fit)")
+    command.add_argument("-m", type=_whole, required=True, help="quads around the axis")
+    command.add_argument("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
     text = """exact: straight-edged quads with these angles; smooth: points of the smooth web;
         paper: the published algorithm (%(default)s)"""
     ways = "exact", "smooth", "paper"
@@ -297,8 +300,8 @@ def _profile(name):
 def _optimize_options(command):
     command.add_argument("net", help="a quad mesh: .obj, .ply, .off or .vtp")
     _angle_options(command, "; of --theta, --theta0, --lam, --mu at most two")
-    command.add_argument("--lam", type=positive, help="ratio of the diagonals, |d2| / |d1|")
-    command.add_argument("--mu", type=positive, help="ratio of the medial lines, |m13| / |m24|")
+    command.add_argument("--lam", type=_positive, help="ratio of the diagonals, |d2| / |d1|")
+    command.add_argument("--mu", type=_positive, help="ratio of the medial lines, |m13| / |m24|")
     command.add_argument("--reference", metavar="FILE", help="a surface to stay near")
     text = "keep every vertex on the reference"
     command.add_argument("--on-surface", action="store_true", help=text)
@@ -350,7 +353,7 @@ def _explore_options(command):
     text = "a surface to cover, as for `inet cover` (without: examples)"
     command.add_argument("surface", nargs="?", help=text)
     text = "of the address (8765, or the next that is free)"
-    command.add_argument("--port", type=port, metavar="N", help=text)
+    command.add_argument("--port", type=_port, metavar="N", help=text)
     command.add_argument("--open", action="store_true", help="open the page in a browser")
 
 

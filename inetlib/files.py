@@ -7,6 +7,7 @@ slow is imported: `start` needs this module before all others.
 import os
 import re
 import shutil
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -15,7 +16,7 @@ WRITTEN = []  # the files that this process has put in their places
 
 
 @contextmanager
-def replacing(path):
+def replacing(path: str | Path) -> Iterator[Path]:
     """A name like `path` to write to, renamed onto it when the block ends well, else removed."""
     path = Path(path)
     with _temporary(path.parent, path.suffix.lower()) as new:
@@ -25,7 +26,7 @@ def replacing(path):
 
 
 @contextmanager
-def scratch(folder):
+def scratch(folder: str | Path) -> Iterator[Path]:
     """A new, empty folder in `folder`, removed at the end of the block."""
     with _temporary(Path(folder)) as new:
         new.mkdir()
@@ -44,13 +45,13 @@ def _temporary(folder, suffix=""):
         LIVE.discard(new)
 
 
-def clear():
+def clear() -> None:
     """Remove the temporary files and folders of this process: it is about to end."""
     for path in list(LIVE):
         _remove(path)
 
 
-def sweep(folder):
+def sweep(folder: str | Path) -> None:
     """Remove what processes that are gone have left in a folder, which need not be there."""
     folder, live = Path(folder), {path.name for path in LIVE}
     with suppress(OSError):

@@ -7,6 +7,7 @@ a handler tidies up, speaks, and ends the process.  Only programs install it, be
 import os
 import signal
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from . import files
@@ -15,10 +16,11 @@ SIGNALS = signal.SIGINT, signal.SIGTERM
 ENDS = []  # functions without arguments that end what this process has started
 
 
-def main(arguments=None):
+def main(arguments: list[str] | None = None) -> int:
     """`cli.main` for a process of its own: the exit code, or the end by a signal: 130."""
     words = sys.argv[1:] if arguments is None else arguments
-    listen(lambda: f"inet: {stopped(*words[:1])}")
+    quiet = words[:1] in (["figures"], ["explore"])
+    listen(lambda: f"inet: stopped{', nothing was written' * (not quiet and not files.WRITTEN)}")
     from .cli import main as run
 
     code = run(words)
@@ -26,13 +28,7 @@ def main(arguments=None):
     return code
 
 
-def stopped(command="", written=0):
-    """What is said of a command when it is stopped; written: the files there were before it."""
-    quiet = command in ("figures", "explore") or len(files.WRITTEN) > written
-    return "stopped" if quiet else "stopped, nothing was written"
-
-
-def listen(sentence, fresh=False):
+def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
     sentence() is said on stderr; fresh: on a new line, after a progress bar.  A signal that
@@ -56,13 +52,13 @@ def listen(sentence, fresh=False):
             signal.signal(number, stop)
 
 
-def finished():
+def finished() -> None:
     """The work is done: Ctrl-C no longer changes how this process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
-def held():
+def held() -> Iterator[None]:
     """Signals wait until the block has ended: it starts what must be known to be ended."""
     waiting = []
     handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}

@@ -8,7 +8,7 @@ missing package is an ImportError that says what to install.
 
 import importlib.util
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -185,7 +185,14 @@ def check_output(path: str | Path, curves: bool = False, force: bool = False) ->
     return known
 
 
-def write(path, V, Q, curves=None, polygons=(), force: bool = False) -> None:
+def write(
+    path: str | Path,
+    V: np.ndarray,
+    Q: np.ndarray,
+    curves: mesh.Families | str | None = None,
+    polygons: Sequence = (),
+    force: bool = False,
+) -> None:
     """Write a net; the suffix of the path names the format.
 
     V         (n, 3) vertices; float32 in GLB files by the format, else every bit is kept

@@ -14,9 +14,9 @@ PLY_TYPES = {
 PLY_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def read_ply(path):
+def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     """Points (n, 3) and faces of a PLY file, text or binary of either byte order."""
-    head, mark, body = Path(path).read_bytes().partition(b"end_header")
+    head, mark, body = path.read_bytes().partition(b"end_header")
     if not head.startswith(b"ply") or not mark:
         raise ValueError("a PLY file starts with `ply` and a header that ends with `end_header`")
     form, elements = _ply_header(head.decode("ascii", errors="replace").splitlines())
@@ -93,7 +93,7 @@ def _ply_runs(body, at, count, properties):
     return runs, at
 
 
-def write_ply(path, V, Q, polygons, curves):
+def write_ply(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a binary PLY file, coordinates as `double`; it has no place for curves here."""
     size = "uchar" if all(len(polygon) < 256 for polygon in polygons) else "int"
     head = (
@@ -107,12 +107,12 @@ def write_ply(path, V, Q, polygons, curves):
     rows["count"], rows["corners"] = Q.shape[1], Q
     more = [np.array(len(p), kind).tobytes() + p.astype("<i4").tobytes() for p in polygons]
     body = [V.astype("<f8").tobytes(), rows.tobytes(), *more]
-    Path(path).write_bytes(head.encode() + b"".join(body))
+    path.write_bytes(head.encode() + b"".join(body))
 
 
-def read_stl(path):
+def read_stl(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     """Corners (3 f, 3) of all triangles of an STL file, and the triangles (f, 3) themselves."""
-    data = Path(path).read_bytes()
+    data = path.read_bytes()
     count = int.from_bytes(data[80:84], "little")
     if len(data) == 84 + 50 * count:
         rows = np.frombuffer(data, [("floats", "<f4", (4, 3)), ("other", "<u2")], count, 84)

@@ -20,12 +20,12 @@ sizes = numpy.array([len(face) for face in found.irregular_faces], dtype=int)
 numpy.savez(sys.stdout.buffer, points=found.points, padded=found.faces, sizes=sizes)"""
 
 
-def read_vtp(path):
+def read_vtp(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over.
 
     Another process reads it: some broken files end the process in which VTK reads them.
     """
-    start = Path(path).read_bytes()[:2000]
+    start = path.read_bytes()[:2000]
     if b"<VTKFile" not in start or b"PolyData" not in start:
         raise ValueError("no VTP file: an XML file of the type PolyData is wanted")
     done = subprocess.run([sys.executable, "-P", "-c", READ_VTP, path], capture_output=True)
@@ -41,7 +41,7 @@ def read_vtp(path):
     return points, [face[1:] for face in np.split(padded, np.cumsum(1 + sizes))[:-1]]
 
 
-def write_vtp(path, V, Q, polygons, curves):
+def write_vtp(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a VTP file.  Cell data `family`: 0 u, 1 v, 2 d1, 3 d2 for curves, -1 for panels."""
     import pyvista
 
@@ -52,7 +52,7 @@ def write_vtp(path, V, Q, polygons, curves):
     panels = [-1] * (len(Q) + len(polygons))
     made.cell_data["family"] = np.array(family + panels, dtype=np.int8)
     made.save(path)
-    if not Path(path).read_bytes().endswith(b"</VTKFile>\n"):  # a full disk is not told
+    if not path.read_bytes().endswith(b"</VTKFile>\n"):  # a full disk is not told
         raise OSError(f"VTK could not write {path}")
 
 
@@ -64,7 +64,7 @@ def _colours(curves):
     return {k: tuple(int(c[i : i + 2], 16) for i in (1, 3, 5)) for k, c in text.items()}
 
 
-def write_dxf(path, V, Q, polygons, curves):
+def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a DXF file (R2010, no unit): layer `panels` with one MESH, and 3D polylines in
     the layers `u`, `v`, `d1`, `d2`.
     """
@@ -85,7 +85,7 @@ def write_dxf(path, V, Q, polygons, curves):
     drawing.saveas(path)
 
 
-def write_3dm(path, V, Q, polygons, curves):
+def write_3dm(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a Rhino file (version 7, no unit): layer `panels` with one mesh, its vertices in
     double precision, and polylines in the layers `u`, `v`, `d1`, `d2`.
 
@@ -112,7 +112,7 @@ def write_3dm(path, V, Q, polygons, curves):
         for face in F.tolist():
             mesh.Faces.AddFace(*face)
         mesh.Normals.ComputeNormals()
-        model.Objects.AddMesh(mesh, layers["panels"])
+        model.Objects.AddMesh(mesh, layers["panels"])  # type: ignore[call-arg]
     for name, family in curves.items():
         for curve in family:
             line = rhino.Polyline(len(curve))

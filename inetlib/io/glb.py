@@ -13,12 +13,12 @@ TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
 
 
-def read_glb(path):
+def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene.
 
     glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over.
     """
-    data = Path(path).read_bytes()
+    data = path.read_bytes()
     if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
         raise ValueError("no GLB file (binary glTF), or a broken one")
     try:
@@ -85,7 +85,7 @@ def _array(scene, data, number, width):
     return np.ndarray((accessor["count"], width), kind, data, start, strides)
 
 
-def write_glb(path, V, Q, polygons, curves):
+def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
 
     Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).

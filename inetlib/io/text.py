@@ -5,8 +5,10 @@ Readers return points and faces as lists, counted from 0; their ValueErrors name
 
 from pathlib import Path
 
+import numpy as np
 
-def decoded(data):
+
+def decoded(data: bytes) -> str:
     """The bytes of a text file as a string; ValueError when they are something else."""
     if b"\0" in data:
         raise ValueError("the file is binary, not text: does its suffix fit?")
@@ -16,7 +18,7 @@ def decoded(data):
 def _rows(path):
     """(line number, words) of every line that says something; `\\` at an end continues a line."""
     held = []
-    for number, line in enumerate(decoded(Path(path).read_bytes()).splitlines(), 1):
+    for number, line in enumerate(decoded(path.read_bytes()).splitlines(), 1):
         words = held + line.partition("#")[0].split()
         held = []
         if words and words[-1].endswith("\\"):
@@ -49,7 +51,7 @@ def _check_face(face, given, count, first, number):
         raise ValueError(f"line {number}: there is no vertex {bad}, only {first} to {last}")
 
 
-def read_obj(path):
+def read_obj(path: Path) -> tuple[list, list]:
     """Points (n lists of 3) and faces (lists of indices) of a Wavefront OBJ file.
 
     Understands v/vt/vn corners, indices from the end (negative) and continued lines; colours
@@ -71,7 +73,7 @@ def read_obj(path):
     return points, faces
 
 
-def read_off(path):
+def read_off(path: Path) -> tuple[list, list]:
     """Points (n lists of 3) and faces (lists of indices) of an OFF file; no colours."""
     rows = list(_rows(path))
     number, first = rows[0] if rows else (1, [""])
@@ -98,7 +100,7 @@ def read_off(path):
     return points, faces
 
 
-def write_obj(path, V, Q, polygons, curves):
+def write_obj(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write an OBJ file: the group `panels`, and each family of curves as a group of `l` lines."""
     groups = {"panels": [*Q, *polygons], **curves}
     with open(path, "w", encoding="utf-8", newline="\n") as out:
@@ -109,7 +111,7 @@ def write_obj(path, V, Q, polygons, curves):
             out.writelines(f"{key} {_words(indices + 1)}\n" for indices in lists)
 
 
-def write_off(path, V, Q, polygons, curves):
+def write_off(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write an OFF file; it has no place for curves."""
     faces = [*Q, *polygons]
     with open(path, "w", encoding="utf-8", newline="\n") as out:
