@@ -77,10 +77,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run `inet` with a list of arguments, or those of the process: the exit code.
-
-    0 done, 1 no net with these angles was found, 2 wrong input, 130 stopped by Ctrl-C.
-    """
+    """Run `inet` with these arguments, or those of the process: the exit code, see `EPILOG`."""
     words = sys.argv[1:] if arguments is None else arguments
     try:
         given = parser(words).parse_args(words)

@@ -518,7 +518,7 @@ def test_nothing_is_overwritten_without_force_or_when_it_fails(tmp_path, web, mo
         ("n.ply", {"curves": "all"}, "no place for curves"),
         ("n.obj", {"curves": "some"}, "Families"),
         ("n.obj", {"curves": mesh.Families([[0, 999]], [], [], [])}, "names vertex 999"),
-        ("n.obj", {"curves": mesh.Families([np.zeros((3, 3))], [], [], [])}, "indices is wanted"),
+        ("n.obj", {"curves": mesh.Families([np.zeros((3, 3))], [], [], [])}, "indices are wanted"),
         ("n.obj", {"polygons": [[0, 1, -1]]}, "names vertex -1"),
     ],
 )

@@ -160,11 +160,8 @@ def _format(path, suffixes, verb):
         raise ValueError(f"{path} has {what}: files to {verb} end with {' '.join(suffixes)}")
     known = FORMATS[suffix]
     if known.package and importlib.util.find_spec(known.package) is None:
-        raise ImportError(
-            f"{suffix[1:].upper()} files need the package {known.package}: "
-            f"pip install inetlib[{known.extra}]",
-            name=known.package,
-        )
+        what = f"{suffix[1:].upper()} files need the package {known.package}"
+        raise ImportError(f"{what}: pip install inetlib[{known.extra}]")
     return known
 
 
@@ -228,9 +225,7 @@ def _row(given, count, least, what):
     """Indices of at least so many of `count` vertices, as int64."""
     indices = np.asarray(given)
     if indices.ndim != 1 or indices.dtype.kind not in "iu" or len(indices) < least:
-        raise ValueError(
-            f"a {what} has the shape {indices.shape} and type {indices.dtype}: "
-            f"a row of at least {least} vertex indices is wanted"
-        )
+        found = f"the shape {indices.shape} and type {indices.dtype}"
+        raise ValueError(f"a {what} has {found}: {least} or more vertex indices are wanted")
     _check_indices(indices, count, what)
     return indices.astype(np.int64)

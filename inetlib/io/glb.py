@@ -31,9 +31,10 @@ def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
         raise ValueError(f"the GLB file is broken ({type(error).__name__}: {error})") from error
     if not parts:
         raise ValueError("the file has no faces")
-    shifts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
-    faces = [corners + shift for (_, corners), shift in zip(parts, shifts, strict=True)]
-    return np.concatenate([points for points, _ in parts]) @ Y_UP, np.concatenate(faces)
+    points, faces = zip(*parts, strict=True)
+    shifts = np.cumsum([0, *map(len, points[:-1])])
+    faces = [corners + shift for corners, shift in zip(faces, shifts, strict=True)]
+    return np.concatenate(points) @ Y_UP, np.concatenate(faces)
 
 
 def _roots(scene):
@@ -132,6 +133,6 @@ def _mesh(k, name):
 
 def _material(name, colour):
     srgb = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
-    factor = [*(srgb**2.2).round(4).tolist(), 1.0]
-    look = {"baseColorFactor": factor, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+    linear = [*(srgb**2.2).round(4).tolist(), 1.0]
+    look = {"baseColorFactor": linear, "metallicFactor": 0.0, "roughnessFactor": 1.0}
     return {"name": name, "doubleSided": True, "pbrMetallicRoughness": look}
