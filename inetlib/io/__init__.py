@@ -166,7 +166,12 @@ def _format(path, suffixes, verb):
 
 
 def check_output(path: str | Path, curves: bool = False, force: bool = False) -> Format:
-    """The format of a file that `write` can write; else its errors, before the work begins."""
+    """The format of a file that `write` can write; else its errors, before the work begins.
+
+    >>> check_output("net.stl")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: net.stl has the suffix '.stl': files to write end with .obj .ply .off ...
+    """
     path = Path(path)
     known = _format(path, WRITERS, "write")
     if curves and not known.curves:

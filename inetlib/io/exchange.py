@@ -28,7 +28,8 @@ def read_vtp(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     start = path.read_bytes()[:2000]
     if b"<VTKFile" not in start or b"PolyData" not in start:
         raise ValueError("no VTP file: an XML file of the type PolyData is wanted")
-    done = subprocess.run([sys.executable, "-P", "-c", READ_VTP, path], capture_output=True)
+    command = [sys.executable, "-P", "-W", "ignore", "-c", READ_VTP, path]
+    done = subprocess.run(command, capture_output=True)
     errors = done.stderr.decode(errors="replace")
     said = re.search(r"(?:ERR\|.*?\)|AssertionError): ([^\r\n\x1b]*)", errors)
     if said or done.returncode:
