@@ -154,18 +154,16 @@ def _angle_options(command, words, required=False):
 
 
 def _write_options(command, keep):
+    add = command.add_argument
     text = "the net: .obj, .ply, .off, .vtp, .glb, .dxf or .3dm"
-    command.add_argument("-o", "--output", required=True, metavar="FILE", help=text)
+    add("-o", "--output", required=True, metavar="FILE", help=text)
     text = "the four families of curves too, in .obj (.vtp, .glb, .dxf, .3dm always have them)"
-    command.add_argument("--curves", action="store_true", help=text)
-    command.add_argument("--force", action="store_true", help="replace the file if it is there")
+    add("--curves", action="store_true", help=text)
+    add("--force", action="store_true", help="replace the file if it is there")
     if keep:
         text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
-        command.add_argument(
-            "--tolerance", type=_tolerance, default=least, metavar="DEG", help=text
-        )
-        text = "write the best net even if it is off its angles"
-        command.add_argument("--keep", action="store_true", help=text)
+        add("--tolerance", type=_tolerance, default=least, metavar="DEG", help=text)
+        add("--keep", action="store_true", help="write the best net even if it is off its angles")
     _say_options(command)
 
 
@@ -241,16 +239,17 @@ def _cover(given):
 def _web_options(command):
     from .surfaces import PROFILES
 
+    add = command.add_argument
     text = f"""the meridian: {", ".join(PROFILES)}, or a .csv file with a radius and a
         height in each row"""
-    command.add_argument("--profile", required=True, help=text)
+    add("--profile", required=True, help=text)
     _angle_options(command, "", required=True)
-    command.add_argument("-m", type=_whole, required=True, help="quads around the axis")
-    command.add_argument("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
+    add("-m", type=_whole, required=True, help="quads around the axis")
+    add("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
     text = """exact: straight-edged quads with these angles; smooth: points of the smooth web;
         paper: the published algorithm (%(default)s)"""
     ways = "exact", "smooth", "paper"
-    command.add_argument("--method", choices=ways, default="exact", help=text)
+    add("--method", choices=ways, default="exact", help=text)
     _write_options(command, keep=False)
 
 
@@ -295,18 +294,18 @@ def _profile(name):
 
 
 def _optimize_options(command):
-    command.add_argument("net", help="a quad mesh: .obj, .ply, .off or .vtp")
+    add = command.add_argument
+    add("net", help="a quad mesh: .obj, .ply, .off or .vtp")
     _angle_options(command, "; of --theta, --theta0, --lam, --mu at most two")
-    command.add_argument("--lam", type=_positive, help="ratio of the diagonals, |d2| / |d1|")
-    command.add_argument("--mu", type=_positive, help="ratio of the medial lines, |m13| / |m24|")
-    command.add_argument("--reference", metavar="FILE", help="a surface to stay near")
-    text = "keep every vertex on the reference"
-    command.add_argument("--on-surface", action="store_true", help=text)
-    command.add_argument("--fixed", choices=("boundary",), help="vertices that stay")
+    add("--lam", type=_positive, help="ratio of the diagonals, |d2| / |d1|")
+    add("--mu", type=_positive, help="ratio of the medial lines, |m13| / |m24|")
+    add("--reference", metavar="FILE", help="a surface to stay near")
+    add("--on-surface", action="store_true", help="keep every vertex on the reference")
+    add("--fixed", choices=("boundary",), help="vertices that stay")
     text = """the way to the angles: from the mean ones, through right angles, or at once
         (%(default)s)"""
     ways = "mean", "medials", "diagonals", "squares", "jump"
-    command.add_argument("--via", choices=ways, default="mean", help=text)
+    add("--via", choices=ways, default="mean", help=text)
     _write_options(command, keep=True)
 
 
@@ -347,11 +346,10 @@ def _optimize(given):
 
 
 def _explore_options(command):
-    text = "a surface to cover, as for `inet cover` (without: examples)"
-    command.add_argument("surface", nargs="?", help=text)
-    text = "of the address (8765, or the next that is free)"
-    command.add_argument("--port", type=_port, metavar="N", help=text)
-    command.add_argument("--open", action="store_true", help="open the page in a browser")
+    add = command.add_argument
+    add("surface", nargs="?", help="a surface to cover, as for `inet cover` (without: examples)")
+    add("--port", type=_port, metavar="N", help="of the address (8765, or the next that is free)")
+    add("--open", action="store_true", help="open the page in a browser")
 
 
 def _explore(given):
