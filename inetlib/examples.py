@@ -5,7 +5,6 @@ from scipy.sparse import coo_array, diags_array
 
 from . import mesh
 from .parallelogram import check_whole
-from .solver import sparse
 
 
 def wavy_roof(n: int = 40):
@@ -33,6 +32,8 @@ def hanging_shell(n: int = 30):
 
     The edges are springs of no length, stronger at the border: equilibrium is one linear system.
     """
+    from .solver import sparse  # slow to load
+
     n = check_whole("n", n, 2)
     Q = mesh.grid_quads(n, n)
     x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1), indexing="ij")

@@ -720,7 +720,7 @@ def test_a_given_net_is_checked(bad):
 # --- saving -------------------------------------------------------------------------------
 
 
-PACKAGES = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
+PACKAGES = {".vtp": "pyvista", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
 
 
 def package(suffix):

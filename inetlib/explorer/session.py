@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import io, measure, mesh, parallelogram, paths, plot
+from .. import io, measure, mesh, parallelogram, plot
 from . import choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
@@ -191,5 +191,5 @@ def _try(make):
 
 def missing(suffix):
     """The package that a file with this suffix needs and that is not installed, or ""."""
-    package = paths.PACKAGES.get(suffix, "")
+    package = io.PACKAGES.get(suffix, "")
     return package if package and importlib.util.find_spec(package) is None else ""
