@@ -1,10 +1,6 @@
-"""Drawing with matplotlib: plane figures, and 3D by projected, depth-sorted polygons.
+"""Drawing with matplotlib: plane figures, and 3D by projected, depth-sorted polygons, no OpenGL.
 
-No OpenGL is needed anywhere.  One colour a family through all figures: the u-curves, the
-v-curves, and the two families of diagonals d1 and d2.  The four differ in lightness too, so
-they stay apart in greyscale.
-
-Paper: Figs. 1-13 (drawing).
+One colour a family (u, v, d1, d2) through all figures, of different lightness.
 """
 
 from importlib.resources import files
@@ -12,28 +8,28 @@ from importlib.resources import files
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.colors import to_rgb, to_rgba_array
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 
 from . import mesh, ties
 
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 DARK = "#6f8fbf"  # inscribed parallelograms in space
-STYLE = files("inetlib") / "inet.mplstyle"
 DEGREE = float(np.pi / 180)
 ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on every machine
 
 
 def use_style():
     """Make the project's style the default of this session, whatever the user's own one is."""
-    plt.style.use(["default", str(STYLE)])
+    plt.style.use(["default", str(files("inetlib") / "inet.mplstyle")])
 
 
-def canvas(panels, width, height, ratios=None):
+def canvas(panels, width: float, height: float, ratios=None):
     """A figure with named panels: (figure, {name: axes}), axes off and of equal aspect.
 
-    panels: rows of names as for `matplotlib.pyplot.subplot_mosaic`; width, height in inches;
-    ratios: relative widths of the columns.
+    panels: rows of names, see `pyplot.subplot_mosaic`; width, height: inches; ratios: of columns.
     """
     use_style()
     figure = plt.figure(figsize=(width, height))
@@ -44,15 +40,12 @@ def canvas(panels, width, height, ratios=None):
     return figure, axes
 
 
-def panel(ax, letter, text=""):
+def panel(ax, letter: str, text: str = ""):
     """The panel's letter in bold, and a few words, above the axes."""
     ax.set_title(rf"$\mathbf{{{letter}}}$" + (f"  {text}" if text else ""), loc="left")
 
 
-# --- in the plane -------------------------------------------------------------------------
-
-
-def plane(points):
+def plane(points) -> np.ndarray:
     """Points as (..., 2): complex numbers, (..., 2) or (..., 3) arrays (z is dropped)."""
     points = np.asarray(points)
     if np.iscomplexobj(points):
@@ -60,47 +53,60 @@ def plane(points):
     return points[..., :2]
 
 
-def curves(ax, lines, colour, width=1.1, style="-", **options):
+def curves(ax, lines, colour, width=1.1, style="-", zorder=2, alpha=None):
     """Polylines (complex or (k, 2) arrays) as one collection; returns it."""
+    look = {"colors": colour, "linewidths": width, "linestyles": style, "alpha": alpha}
     lines = [plane(line) for line in lines]
-    collection = LineCollection(
-        lines, colors=colour, linewidths=width, linestyles=style, capstyle="round", **options
-    )
-    ax.add_collection(collection)
-    ax.autoscale_view()
-    return collection
+    return _added(ax, LineCollection(lines, zorder=zorder, capstyle="round", **look))
 
 
-def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, **options):
+def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, zorder=1, alpha=None):
     """Faces of a planar mesh as one collection; `fill` is a colour or one colour a face."""
-    collection = PolyCollection(
-        plane(V)[faces], facecolors=fill, edgecolors=edge, linewidths=width, **options
-    )
+    look = {"facecolors": fill, "edgecolors": edge, "linewidths": width, "alpha": alpha}
+    return _added(ax, PolyCollection(plane(V)[faces], zorder=zorder, **look))
+
+
+def _added(ax, collection):
     ax.add_collection(collection)
     ax.autoscale_view()
     return collection
 
 
-def net(ax, V, Q, families=("u", "v"), width=1.1):
+def text(ax, place, words, size=None, halo=0, colour="black", zorder=6, ha="center", va="center"):
+    """Words at a point of the plane, complex or (2,), in a white border of `halo` points."""
+    effects = [withStroke(linewidth=halo, foreground="white")] if halo else None
+    look = {"color": colour, "fontsize": size, "path_effects": effects, "zorder": zorder}
+    ax.text(*plane(place), words, ha=ha, va=va, **look)
+
+
+def degrees(theta: float, theta0: float | None = None) -> str:
+    """TeX for an angle (radians), or for both angles of a net with their names."""
+    one = f"{theta / DEGREE:.4g}\\degree"
+    if theta0 is None:
+        return one
+    two = degrees(theta0)
+    return rf"\theta=\theta_0={one}" if one == two else rf"\theta={one},\ \theta_0={two}"
+
+
+def net(ax, V: np.ndarray, Q: np.ndarray, families=("u", "v"), width=1.1):
     """The named families (of u, v, d1, d2) of mesh curves of a planar net, each in its colour."""
     if unknown := set(families) - set(COLOURS):
         raise ValueError(f"no family {sorted(unknown)}: there are u, v, d1 and d2")
-    for name, lines in mesh.polylines(Q)._asdict().items():
-        if name in families:
-            curves(ax, [V[line] for line in lines], COLOURS[name], width)
+    lines = mesh.polylines(Q)._asdict()
+    for name in families:
+        curves(ax, [V[line] for line in lines[name]], COLOURS[name], width)
 
 
-def black_quads(ax, V, Q, fill=FILL, edge=INK, width=0.4):
+def black_quads(ax, V: np.ndarray, Q: np.ndarray, fill=FILL, edge=INK, width=0.4):
     """The inscribed parallelograms of a planar net."""
     board = mesh.checkerboard(V, Q)
     polygons(ax, board.V, board.black, fill, edge, width)
 
 
-def arc(apex, a, b, radius, samples=40):
-    """Points on the arc around `apex` from the direction a to the direction b, (samples, dim).
+def arc(apex, a, b, radius: float, samples: int = 40) -> np.ndarray:
+    """Points on the arc around `apex` from the direction a to b, (samples, 2 or 3).
 
-    apex, a, b: vectors of two or three coordinates, a and b not parallel, else ValueError.
-    A right angle is drawn as a corner (3 points).
+    A right angle is drawn as a corner (3 points); ValueError where a and b are parallel.
     """
     apex, a, b = (np.asarray(x, dtype=float) for x in (apex, a, b))
     if np.linalg.matrix_rank([a, b]) < 2:
@@ -109,43 +115,33 @@ def arc(apex, a, b, radius, samples=40):
     if abs(a @ b) < 1e-9:
         return apex + 0.7 * radius * np.array([a, a + b, b])
     normal = b - (a @ b) * a
-    angle = np.arctan2(np.linalg.norm(normal), a @ b)
-    t = np.linspace(0, angle, samples)[:, None]
-    return apex + radius * (np.cos(t) * a + np.sin(t) * normal / np.linalg.norm(normal))
+    length = np.linalg.norm(normal)
+    t = np.linspace(0, np.arctan2(length, a @ b), samples)[:, None]
+    return apex + radius * (np.cos(t) * a + np.sin(t) * normal / length)
 
 
-def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45, size=None):
-    """An angle mark at `apex` between the directions a and b, with its label outside the arc.
-
-    In space (three coordinates) `camera` projects it.
-    """
+def angle(ax, apex, a, b, radius, label="", colour=INK, camera=None, gap=1.45):
+    """An `arc` with its label outside; in space (three coordinates) `camera` projects both."""
     points = arc(apex, a, b, radius)
     middle = np.asarray(apex) + gap * (points[len(points) // 2] - apex)
     if camera is not None:
-        points, middle = camera(points)[0], camera(middle[None])[0][0]
+        points, middle = camera(points)[0], camera(middle)[0]
     ax.plot(*points.T, color=colour, lw=1.0, zorder=5)
     if label:
-        ax.text(*middle, label, color=colour, ha="center", va="center", zorder=6, fontsize=size)
+        text(ax, middle, label, colour=colour)
 
 
-def vector(ax, start, end, colour=INK, label="", shift=(0, 0), width=1.6, at=0.5, zorder=4):
-    """An arrow between two points of the plane, and a label beside the fraction `at` of it."""
-    start, end = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+def vector(ax, start, end, colour=INK, width=1.6, zorder=4):
+    """An arrow between two points of the plane."""
     arrow = {"arrowstyle": "-|>,head_width=0.22,head_length=0.45", "color": colour, "lw": width}
     arrow |= {"shrinkA": 0, "shrinkB": 0, "mutation_scale": 12}
     ax.annotate("", end, start, arrowprops=arrow, zorder=zorder)
     ax.update_datalim([start, end])
     ax.autoscale_view()
-    if label:
-        middle = start + at * (end - start) + np.asarray(shift)
-        ax.text(*middle, label, color=colour, ha="center", va="center", zorder=zorder + 1)
 
 
-# --- in space -----------------------------------------------------------------------------
-
-
-def camera(azimuth, elevation):
-    """An orthographic camera: a function from points (k, 3) to (xy (k, 2), nearness (k,)).
+def camera(azimuth: float, elevation: float):
+    """An orthographic camera: a function from points (..., 3) to (xy (..., 2), nearness (...)).
 
     azimuth, elevation: radians, the direction from which the scene is seen; z points up.
     """
@@ -160,26 +156,20 @@ def camera(azimuth, elevation):
     return project
 
 
-def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35):
-    """One colour a face, darker where the face turns away from the light (both sides alike).
-
-    V: (n, 3), faces: (f, 3 or 4) -> RGB (f, 3).
-    """
+def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35) -> np.ndarray:
+    """RGB (f, 3) of faces (f, 3 or 4): darker where turned from the light, both sides alike."""
     corners = np.asarray(V)[faces]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = normal / np.where(length > 0, length, 1)
     light = np.asarray(light) / np.linalg.norm(light)
-    rgb = np.array(plt.matplotlib.colors.to_rgb(colour))
-    return rgb * (1 - depth * (1 - np.abs(normal @ light)))[:, None]
+    return np.array(to_rgb(colour)) * (1 - depth * (1 - np.abs(normal @ light)))[:, None]
 
 
-def order(keys):
-    """The places of the keys from the smallest to the largest; ties keep their order.
+def order(keys) -> np.ndarray:
+    """The places of the keys (k,) from the smallest to the largest; ties keep their order.
 
-    keys: (k,) numbers.  Neighbours closer than `ties.TIE` times the range of all, or by the
-    rounding of the largest, are ties: which of two computed numbers is larger by its last
-    digits differs from machine to machine.
+    Ties: within `ties.TIE` of the range of all, or within the rounding of the largest.
     """
     keys = np.asarray(keys, dtype=float)
     close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
@@ -195,8 +185,8 @@ def families(V, Q, widths):
 def cells(V, Q, white=False):
     """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
 
-    light: the four corners left of every face; with white=True the white quads of the
-    checkerboard, and corners only where these leave some along the rim.
+    light: the corners left of every face, or with `white` the white quads of the checkerboard and
+    the corners that these leave along the rim.
     """
     board = mesh.checkerboard(V, Q)
     black = board.black + len(V)
@@ -207,37 +197,35 @@ def cells(V, Q, white=False):
     return np.concatenate([V, board.V]), black, light
 
 
-def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
-    """A surface and curves on it, painted from the back to the front as vectors.
+def board(ax, view, V, Q, lines):
+    """A net in space: its inscribed parallelograms dark, the corners left light; see `scene`."""
+    points, black, light = cells(V, Q)
+    fill = [shade(points, black, DARK, depth=0.3), shade(points, light, depth=0.2)]
+    scene(ax, view, points, np.concatenate([black, light]), np.concatenate(fill), lines)
 
-    view: a `camera`; V: (n, 3); faces: (f, k) index array; fill: a colour or one colour a
-    face (default `shade`); lines: (points (k, 3), colour, width) triples, cut into segments that
-    are sorted with the faces, in front of those they lie on, and lifted by the fraction
-    `lift` of the scene's depth.
+
+def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
+    """A surface and curves on it, painted from the back to the front as vectors; the collection.
+
+    view: a `camera`; V: (n, 3); faces: (f, k); fill: a colour or one a face, default `shade`;
+    lines: (points (k, 3), colour, width) triples.  Their segments are sorted with the faces, and
+    lifted over those they lie on and by the fraction `lift` of the scene's depth.
     """
     xy, near = view(V)
-    fill = shade(V, faces) if fill is None else fill
-    closed = np.concatenate([faces, faces[:, :1]], axis=1)
-    paths = [Path(p) for p in xy[closed]]
-    keys = list(near[faces].mean(axis=1))
-    rgba = plt.matplotlib.colors.to_rgba_array(fill)
-    inside = [tuple(c) for c in np.broadcast_to(rgba, (len(paths), 4))]
-    edges, widths = list(inside), [0.3] * len(paths)
-    tilt = near[faces].mean(axis=1) - near[faces].min(axis=1)  # else faces hide half their lines
-    lifted = lift * (np.ptp(near) or 1) + tilt.max()
+    middle = near[faces].mean(axis=1)
+    lifted = lift * (np.ptp(near) or 1) + (middle - near[faces].min(axis=1)).max()
+    colours = to_rgba_array(shade(V, faces) if fill is None else fill)
+    colours = map(tuple, np.broadcast_to(colours, (len(faces), 4)))
+    closed = xy[np.concatenate([faces, faces[:, :1]], axis=1)]
+    pieces = [(p, colour, colour, 0.3) for p, colour in zip(closed, colours, strict=True)]
+    keys = [middle]
     for points, colour, width in lines:
         flat, close = view(points)
-        paths += [Path(flat[k : k + 2]) for k in range(len(flat) - 1)]
-        keys += list((close[1:] + close[:-1]) / 2 + lifted)
-        inside += ["none"] * (len(flat) - 1)
-        edges += [colour] * (len(flat) - 1)
-        widths += [width] * (len(flat) - 1)
-    picked = ([values[k] for k in order(keys)] for values in (paths, inside, edges, widths))
-    paths, inside, edges, widths = picked
-    collection = PathCollection(
-        paths, facecolors=inside, edgecolors=edges, linewidths=widths, capstyle="round"
-    )
-    ax.add_collection(collection)
-    ax.update_datalim(np.concatenate([p.vertices for p in paths]))
-    ax.autoscale_view()
-    return collection
+        keys.append((close[1:] + close[:-1]) / 2 + lifted)
+        pieces += [(flat[k : k + 2], "none", colour, width) for k in range(len(flat) - 1)]
+    pieces = [pieces[k] for k in order(np.concatenate(keys))]
+    paths, inside, edges, widths = map(list, zip(*pieces, strict=True))
+    look = {"facecolors": inside, "edgecolors": edges, "linewidths": widths}
+    collection = PathCollection([Path(p) for p in paths], capstyle="round", **look)
+    ax.update_datalim(np.concatenate(paths))
+    return _added(ax, collection)

@@ -140,8 +140,8 @@ def test_drawings_list_their_nets_and_steps(module):
 def test_four_coloured_faces_are_laid_into_their_plane(patch):
     _, Q, found = patch
     _, ax = plt.subplots()
-    patches.enlarged(ax, found["D"].V, Q, fig12._four(20, 20))
-    quads = [p.vertices[:4] for p in ax.collections[1].get_paths()]
+    patches.enlarged(ax, [0, 0, 1, 1], found["D"].V, Q, np.array([189, 190, 209, 210]))
+    quads = [p.vertices[:4] for p in ax.child_axes[0].collections[1].get_paths()]
     assert len(quads) == 4
     for quad in quads:
         sides = np.linalg.norm(quad - np.roll(quad, 1, axis=0), axis=1)

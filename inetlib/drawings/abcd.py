@@ -1,10 +1,8 @@
-"""What Figs. 1 and 2 share: one parallelogram ABCD, drawn, and as a net that can be measured.
+"""One parallelogram ABCD, drawn, and as a net that can be measured.
 
-         A ---------- D      B = 0 and C = 1, so a = |BC| = 1 and b = |AB| = lam
-        /            /       angle B = theta, the diagonals meet at O with
-       B ---------- C        angle AOD = theta0
-
-Paper: Fig. 1, Fig. 2.
+  A ---------- D      B = 0 and C = 1, so a = |BC| = 1 and b = |AB| = lam
+ /            /       angle B = theta, the diagonals meet at O with
+B ---------- C        angle AOD = theta0
 """
 
 import numpy as np
@@ -28,33 +26,28 @@ def net(shape, theta, theta0):
     return *conformal.quads(np.array([[-d2, -d1], [d1, d2]]) / 2), theta, theta0
 
 
-def frame(ax, shape, width=1.8):
-    """The sides in the colours of d1 and d2, the diagonals in those of the medial lines."""
+def frame(ax, shape):
+    """The area, the sides in the colours of d1 and d2, the diagonals in those of u and v."""
     A, B, C, D = shape
-    plot.curves(ax, [[A, C]], plot.COLOURS["v"], 0.7 * width, zorder=3)
-    plot.curves(ax, [[B, D]], plot.COLOURS["u"], 0.7 * width, zorder=3)
-    plot.curves(ax, [[B, A], [C, D]], plot.COLOURS["d2"], width, zorder=4)
-    plot.curves(ax, [[B, C], [A, D]], plot.COLOURS["d1"], width, zorder=4)
-
-
-def text_at(ax, point, label, size=9):
-    """A text centred at a complex point."""
-    ax.text(point.real, point.imag, label, ha="center", va="center", size=size, zorder=6)
+    plot.polygons(ax, shape, [[0, 1, 2, 3]], plot.PALE)
+    plot.curves(ax, [[A, C]], plot.COLOURS["v"], 1.26, zorder=3)
+    plot.curves(ax, [[B, D]], plot.COLOURS["u"], 1.26, zorder=3)
+    plot.curves(ax, [[B, A], [C, D]], plot.COLOURS["d2"], 1.8, zorder=4)
+    plot.curves(ax, [[B, C], [A, D]], plot.COLOURS["d1"], 1.8, zorder=4)
 
 
 def beside(ax, start, end, label, at=0.5, size=10):
     """A label to the right of the segment from `start` to `end`, at the fraction `at` of it."""
     right = -1j * (end - start) / abs(end - start)
-    reach = 0.1 + 0.02 * len(label.replace(r"\lambda", "l")) * abs(
-        right.real
-    )  # a wide label needs more room sideways
-    text_at(ax, start + at * (end - start) + reach * right, f"${label}$", size)
+    width = len(label.replace(r"\lambda", "l"))  # a wide label needs more room sideways
+    reach = 0.1 + 0.02 * width * abs(right.real)
+    plot.text(ax, start + at * (end - start) + reach * right, f"${label}$", size)
 
 
 def angle_at(ax, apex, start, end, radius, label="", gap=0.11, size=9):
     """An angle mark from the direction `start` to `end` (complex), the label beyond the arc."""
     plot.angle(ax, *(plot.plane(z) for z in (apex, start, end)), radius)
     middle = start / abs(start) + end / abs(end)
-    reach = radius + gap if abs(np.angle(end / start) - np.pi / 2) > 1e-9 else radius + 1.4 * gap
-    if label:
-        text_at(ax, apex + reach * middle / abs(middle), label, size)
+    right = abs(np.angle(end / start) - np.pi / 2) <= 1e-9  # its mark is a corner
+    reach = radius + (1.4 * gap if right else gap)
+    plot.text(ax, apex + reach * middle / abs(middle), label, size)

@@ -1,12 +1,9 @@
-"""What may still be chosen of an isogonal net: one curve, two opposite ones, a symmetry, ...
-
-Paper: Sec. 6.1 (beyond the paper: B8).
-"""
+"""What may still be chosen of an isogonal net: one curve, two opposite ones, a symmetry, ..."""
 
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, mesh, plot, publish, reference, solver, surfaces, ties
+from .. import mesh, plot, publish, reference, solver, surfaces, ties
 from ..plot import DEGREE
 from ..solver.problem import Weights
 from . import patches
@@ -21,13 +18,12 @@ TITLES = {
     "F": "the whole boundary: no net",
 }
 SOFT = 0.03  # weight of the boundary
-PRESCRIBED, OLD = "#1a1a1a", "#8a8a8a"
 
 
 def curves(m=CELLS):
     """The vertices that stay, {panel: numbers}, in a grid of m x m quads.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
     rim = mesh.boundary_loops(mesh.grid_quads(m, m))[0]
@@ -41,7 +37,7 @@ def vault(m=CELLS):
 
     Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     u, v = np.meshgrid(*2 * [np.linspace(-1, 1, m + 1)], indexing="ij")
     x, y = 1.1 * u + 0.3 * v, v - 0.15 * u + 0.1 * u**3
@@ -56,7 +52,7 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     A, B, C, F: the freeform roof with the vertices of `curves` fixed; D: with a heavy weight
     of the boundary; E: `vault`, without a reference surface.  theta, theta0: radians.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     found = {}
     for letter, stay in curves(m).items():
@@ -68,7 +64,7 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     return found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=50 * DEGREE):
     """Six wishes at the same two angles: five are granted, the last one is not.
 
@@ -76,43 +72,26 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=
     that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
     of their deviation.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
     view = plot.camera(azimuth, elevation)
     found, stay = nets(theta, theta0), curves()
-    off = {
-        k: np.degrees(measure.deviations(r.V, Q, theta, theta0).max(axis=0))
-        for k, (_, Q, r) in found.items()
-    }
+    off = {k: patches.deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
     scale = Normalize(0, ties.next_multiple(off["F"].max(), 5))
+    data, exact, claims = {}, [], {f"{k} converged": x[2].converged for k, x in found.items()}
     for letter, (V, Q, result) in found.items():
-        colours = patches.DEVIATION(scale(off[letter]))[:, :3]
-        lines = [(_closed(V, Q), OLD, 0.9)]
-        lines += [(line, PRESCRIBED, 2.4) for line in _lines(result.V, Q, stay[letter])]
+        rim = np.append(stay[letter], stay[letter][:1])
+        rows = [rim] if letter == "F" else stay[letter].reshape(-1, CELLS + 1)
+        lines = [(result.V[row], plot.INK, 2.4) for row in rows]
+        lines = [patches.outline(V, Q, plot.GREY, 0.9), *lines]
+        colours = patches.tints(scale, off[letter])
         patches.surface(axes[letter], view, result.V, Q, colours, lines)
         plot.panel(axes[letter], letter, TITLES[letter])
+        if result.converged:
+            data[letter] = result.V
+            exact.append((result.V, Q, result.theta, result.theta0))
+            claims |= patches.claims(letter, result, Q)
     patches.align(list(axes.values()), 0.12)
     patches.bar(axes["F"], scale, [0.02, 0.06, 0.4, 0.035])
-    good = {k: x for k, x in found.items() if x[2].converged}
-    claims = {f"{k} converged": bool(x[2].converged) for k, x in found.items()}
-    for letter, (_, Q, result) in good.items():
-        claims |= patches.claims({letter: result}, Q)
-    return (
-        figure,
-        {k: r.V for k, (_, _, r) in good.items()},
-        [(r.V, Q, r.theta, r.theta0) for _, Q, r in good.values()],
-        claims,
-    )
-
-
-def _closed(V, Q):
-    rim = mesh.boundary_loops(Q)[0]
-    return V[np.append(rim, rim[0])]
-
-
-def _lines(V, Q, stay):
-    """The vertices that stay as point arrays, one a row of the grid, or the whole rim."""
-    if len(stay) > 2 * (CELLS + 1):
-        return [_closed(V, Q)]
-    return [V[row] for row in stay.reshape(-1, CELLS + 1)]
+    return figure, data, exact, claims

@@ -1,13 +1,11 @@
-"""Which meshes can carry an isogonal net: a gallery, labelled or refused, and two nets in space.
-
-Paper: Sec. 4.1 (labels; beyond the paper: B9).
-"""
+"""Which meshes can carry an isogonal net: a gallery, labelled or refused, and two nets in space."""
 
 import numpy as np
 
 from .. import examples, mesh, plot, publish, reference, solver
 from ..plot import DEGREE
 from . import patches
+from .revolution import SLOTS
 
 FACE = "#7b2d8b"  # the singular face
 SEAM = "#d0006f"
@@ -21,7 +19,7 @@ def gallery():
     A: polygons of 3 to 8 sides with corners of valence 4; B: vertices of valence 3 to 8; C:
     polar caps of 3, 5 and 7 sides, closed strips with 3 and 4 turns, a Moebius strip.
 
-    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    Paper: B9.
     """
     found = {}
     for k in range(6):
@@ -38,7 +36,7 @@ def gallery():
 def verdict(Q):
     """ "labelled", or the first words of the reason why `mesh.label` refuses the faces.
 
-    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    Paper: B9.
     """
     try:
         mesh.label(Q)
@@ -56,29 +54,18 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
     D: an octagon with corners of valence 4 in six rings; E: a polar cap of 20 sides.  Both
     start from domes.  theta, theta0: radians.
 
-    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    Paper: B9.
     """
     meshes = {"D": mesh.polygon_rings(8, 6), "E": examples.polar_cap(20, 7)}
     found = {}
     for letter, (V, Q, polygon) in meshes.items():
-        V = _domed(V, *((dome, 0.1) if letter == "D" else (2 * dome, 0.0)))
-        near = reference.mesh(V, Q)
-        result = solver.optimize(
-            V, Q, theta, theta0, reference=near, polygons=[polygon], tolerance=1e-12
-        )
-        found[letter] = V, Q, polygon, result
+        V = patches.domed(V, *((dome, 0.1) if letter == "D" else (2 * dome, 0.0)), 4)
+        options = {"reference": reference.mesh(V, Q), "polygons": [polygon], "tolerance": 1e-12}
+        found[letter] = V, Q, polygon, solver.optimize(V, Q, theta, theta0, **options)
     return found
 
 
-def _domed(V, dome, wave):
-    """The plane mesh on a dome of four waves, its bounding box of diagonal 1."""
-    z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
-    r, waves = np.abs(z), np.real((z / np.abs(z)) ** 4)
-    V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * waves], axis=1)
-    return V / np.linalg.norm(np.ptp(V, axis=0))
-
-
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=48 * DEGREE):
     """The gallery (A to C) and an isogonal net around an octagon (D) and on a polar cap (E).
 
@@ -86,56 +73,45 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
     the colours of u and v; where a mesh is refused, the names spread from one face until they
     meet in disagreement along the dotted edges.
 
-    Paper: Sec. 4.1 (labels; beyond the paper: B9).
+    Paper: B9.
     """
     figure, axes = plot.canvas(MOSAIC, 7.4, 7.2)
-    meshes, words = gallery(), {}
-    for name, (title, V, Q, polygon) in meshes.items():
-        words[name] = verdict(Q)
+    data, exact, claims = {}, [], {}
+    for name, (title, V, Q, polygon) in gallery().items():
+        words = verdict(Q)
         _small(axes[name], V, Q, polygon)
-        _title(axes[name], name, title, words[name])
-    found = nets(theta, theta0)
+        heading = rf"$\mathbf{{{name[0]}}}$  {title}" if name[1] == "0" else title
+        axes[name].set_title(heading, loc="left", fontsize=9)
+        look = {"ha": "center", "va": "top", "size": 7.5, "transform": axes[name].transAxes}
+        colour = plot.INK if words == "labelled" else SEAM
+        axes[name].text(0.5, -0.03, words, color=colour, **look)
+        claims[f"{name} {title}"] = words.replace("\n", " ")
     view = plot.camera(azimuth, elevation)
     texts = {"D": "around an octagon", "E": "on a polar cap"}
-    for letter, (_, Q, polygon, result) in found.items():
-        corners = result.V[polygon]
-        patches.surface(axes[letter], view, result.V, Q, polygons=[(corners, FACE)])
-        angles = (
-            rf"$\theta={np.degrees(theta):.4g}\degree,\ \theta_0={np.degrees(theta0):.4g}\degree$"
-        )
-        plot.panel(axes[letter], letter, f"{texts[letter]}: {angles}")
-    claims = {f"{name} {meshes[name][0]}": text.replace("\n", " ") for name, text in words.items()}
-    numbers = {}
-    for letter, (_, Q, _, result) in found.items():
-        numbers |= patches.claims({letter: result}, Q)
-    return (
-        figure,
-        {k: r.V for k, (_, _, _, r) in found.items()},
-        [(r.V, Q, r.theta, r.theta0) for _, Q, _, r in found.values()],
-        claims | numbers,
-    )
+    for letter, (_, Q, polygon, result) in nets(theta, theta0).items():
+        V = data[letter] = result.V
+        patches.surface(axes[letter], view, V, Q, polygons=[(V[polygon], FACE)])
+        plot.panel(axes[letter], letter, f"{texts[letter]}: ${plot.degrees(theta, theta0)}$")
+        exact.append((V, Q, result.theta, result.theta0))
+        claims |= patches.claims(letter, result, Q)
+    return figure, data, exact, claims
 
 
 def _small(ax, V, Q, polygon):
     """A mesh with its edges in the colours of the families, and where these disagree."""
     labelled, bad = examples.seam(Q)
-    flat = np.ptp(V[:, 2]) == 0
-    points = plot.plane(V) if flat else plot.camera(-75 * DEGREE, 32 * DEGREE)(V)[0]
-    if flat:
+    view = plot.camera(-75 * DEGREE, 32 * DEGREE)
+    edges = {k: np.concatenate([labelled[:, pair] for pair in SLOTS[k]]) for k in "uv"}
+    if np.ptp(V[:, 2]) == 0:
+        points = plot.plane(V)
         plot.polygons(ax, points, Q, "#f0f2f5")
-    if polygon is not None:
-        plot.polygons(ax, points, polygon[None], FACE)
-    v1, v2, v3, v4 = labelled.T
-    edges = {
-        "u": np.concatenate([np.stack([v2, v3], 1), np.stack([v1, v4], 1)]),
-        "v": np.concatenate([np.stack([v2, v1], 1), np.stack([v3, v4], 1)]),
-    }
-    if flat:
+        if polygon is not None:
+            plot.polygons(ax, points, polygon[None], FACE)
         for family, pairs in edges.items():
             plot.curves(ax, points[pairs], plot.COLOURS[family], 1.0)
     else:
+        points = view(V)[0]
         lines = [(V[pair], plot.COLOURS[k], 0.9) for k in "uv" for pair in edges[k]]
-        view = plot.camera(-75 * DEGREE, 32 * DEGREE)
         plot.scene(ax, view, V, Q, "#e3e7ee", lines, lift=0.01)
     low, high = points.min(axis=0), points.max(axis=0)
     half = 0.53 * (high - low).max() * np.array([-1, 1])
@@ -143,12 +119,3 @@ def _small(ax, V, Q, polygon):
     if len(bad):
         plot.curves(ax, points[bad], "white", 3.4, zorder=5)
         plot.curves(ax, points[bad], SEAM, 2.6, (0, (0.6, 0.9)), zorder=6)
-
-
-def _title(ax, name, title, words):
-    letter = name[0] if name[1] == "0" else ""
-    ax.set_title((rf"$\mathbf{{{letter}}}$  " if letter else "") + title, loc="left", fontsize=9)
-    colour = plot.INK if words == "labelled" else SEAM
-    ax.text(
-        0.5, -0.03, words, transform=ax.transAxes, ha="center", va="top", size=7.5, color=colour
-    )

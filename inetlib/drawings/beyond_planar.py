@@ -6,14 +6,14 @@ from .. import mesh, parallelogram, planar, plot, publish
 from ..plot import DEGREE
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     """A leaf filled with a net, a bent annulus, a hexagon with rings, and its middle.
 
     theta, theta0: radians, of the hexagon (C and D), the others have 60 degrees; tip: angle
     of the leaf's tips, radians; pull: of two handles of the annulus.
 
-    Paper: Sec. 3.3 (beyond the paper: B7).
+    Paper: B7.
     """
     figure, axes = plot.canvas([list("AB"), list("CD")], 7.2, 6.0)
     equal = 60 * DEGREE, 60 * DEGREE
@@ -21,21 +21,27 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     two, Q2, held2 = annulus(*equal, pull=pull)
     three, Q3, held3, polygon = hexagon(theta, theta0)
     plot.curves(axes["A"], [np.append(outline, outline[0])], plot.INK, 2.4, alpha=0.35)
-    _net(axes["A"], "A", f"{_words(*equal)}, an outline filled", one.V, Q1, held1)
-    _net(axes["B"], "B", f"{_words(*equal)}, a bent annulus", two.V, Q2, held2)
-    _net(axes["C"], "C", f"{_words(theta, theta0)}, a hexagon", three.V, Q3, held3)
-    near = np.isin(Q3, _around(Q3, polygon, 2)).all(axis=1)
+    words, others = (f"${plot.degrees(*pair)}$" for pair in (equal, (theta, theta0)))
+    _net(axes["A"], "A", f"{words}, an outline filled", one.V, Q1, held1)
+    _net(axes["B"], "B", f"{words}, a bent annulus", two.V, Q2, held2)
+    _net(axes["C"], "C", f"{others}, a hexagon", three.V, Q3, held3)
+    inside = polygon
+    for _ in range(2):  # two quads around it
+        inside = np.unique(Q3[np.isin(Q3, inside).any(axis=1)])
+    near = np.isin(Q3, inside).all(axis=1)
     _net(axes["D"], "D", "the middle of C", three.V, Q3[near], (), 1.2)
     for name in "CD":
         plot.polygons(axes[name], three.V, polygon[None], plot.GREY, plot.INK, 0.8)
     found = {"leaf": (one, Q1, *equal), "annulus": (two, Q2, *equal)}
     found["hexagon"] = three, Q3, theta, theta0
-    return (
-        figure,
-        {k: net.V for k, (net, *_) in found.items()} | {"outline": outline},
-        [(net.V, *rest) for net, *rest in found.values()],
-        _claims(found),
-    )
+    data, claims = {name: net.V for name, (net, *_) in found.items()}, {}
+    for name, (net, Q, *_) in found.items():
+        claims[f"{name}: quads"] = len(Q)
+        claims[f"{name}: complex freedoms"] = net.freedom
+        claims[f"{name}: faces that cross themselves"] = len(net.flipped)
+    claims["leaf: largest distance from the outline"] = round(one.distance, 6)
+    exact = [(net.V, *rest) for net, *rest in found.values()]
+    return figure, data | {"outline": outline}, exact, claims
 
 
 def _net(ax, name, text, V, Q, held, width=0.9):
@@ -50,31 +56,6 @@ def _net(ax, name, text, V, Q, held, width=0.9):
     ax.set_anchor("N")
 
 
-def _words(*angles):
-    theta, theta0 = (f"{np.degrees(x):.4g}\\degree" for x in angles)
-    if theta == theta0:
-        return rf"$\theta=\theta_0={theta}$"
-    return rf"$\theta={theta},\ \theta_0={theta0}$"
-
-
-def _around(Q, polygon, steps):
-    """The vertices of the polygon and of the quads around it, `steps` times."""
-    inside = polygon
-    for _ in range(steps):
-        inside = np.unique(Q[np.isin(Q, inside).any(axis=1)])
-    return inside
-
-
-def _claims(found):
-    claims = {}
-    for name, (net, Q, *_) in found.items():
-        claims[f"{name}: quads"] = len(Q)
-        claims[f"{name}: complex freedoms"] = net.freedom
-        claims[f"{name}: faces that cross themselves"] = len(net.flipped)
-    claims["leaf: largest distance from the outline"] = round(found["leaf"][0].distance, 6)
-    return claims
-
-
 def leaf(theta=60 * DEGREE, theta0=60 * DEGREE, cells=14, tip=80 * DEGREE, bend=0.12):
     """A leaf-shaped outline filled with a grid: (Planar, Q, handles, outline).
 
@@ -82,7 +63,7 @@ def leaf(theta=60 * DEGREE, theta0=60 * DEGREE, cells=14, tip=80 * DEGREE, bend=
     two tips, radians; bend: how far its middle line bends up, in half lengths.  Two opposite
     corners of the grid are handles at the tips, the rest of its boundary glides.
 
-    Paper: Sec. 3.3 (beyond the paper: B7).
+    Paper: B7.
     """
     _, mu = parallelogram.ratios(theta, theta0)
     rows = max(1, round(cells * mu))
@@ -101,7 +82,7 @@ def annulus(theta=60 * DEGREE, theta0=60 * DEGREE, around=36, rows=10, pull=0.35
     around, rows: quads around and across; pull: how far two of the four handles on the outer
     rim move outwards, in its radii.  Two more handles hold the inner rim.
 
-    Paper: Sec. 3.3 (beyond the paper: B7).
+    Paper: B7.
     """
     if around % 4:
         raise ValueError(f"around = {around}: a multiple of 4 is wanted")
@@ -120,7 +101,7 @@ def closed_strip(theta, theta0, around, rows):
     Its points are w^i b^j with w^around = 1: the equations ask for b = (1 + K w) / (w + K),
     so it closes for all angles, with rings whose ratio |b| the angles decide.
 
-    Paper: Sec. 3.3 (beyond the paper: B7).
+    Paper: B7.
     """
     K, w = planar.factor_k(theta, theta0), np.exp(2j * np.pi / around)
     b = (1 + K * w) / (w + K)
@@ -132,7 +113,7 @@ def hexagon(theta=60 * DEGREE, theta0=45 * DEGREE, rings=8, obtuse=0.72):
 
     obtuse: distance from the middle of the three corners with obtuse angles; 1 for the others.
 
-    Paper: Sec. 3.3 (beyond the paper: B7).
+    Paper: B7.
     """
     _, Q, polygon = mesh.polygon_rings(6, rings)
     rim = max(mesh.boundary_loops(Q), key=len)

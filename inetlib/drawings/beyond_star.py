@@ -7,15 +7,8 @@ from .. import conformal, loxodrome, measure, mesh, plot, publish, reference, so
 from ..plot import DEGREE
 
 SIZES = 8, 16, 32, 64
-NAMES = {
-    "z2": "$z^2$",
-    "exp": r"$\exp$",
-    "inverse": "$1/z$",
-    "sphere": "sphere, loxodromes",
-    "roof": "roof, optimised",
-}
-MARKERS = dict(zip(NAMES, "xosD^", strict=True))
-_COLOUR = dict(zip(NAMES, [plot.GREY, plot.INK, "#7b2d8b", "#5b7fb5", "#9a5b1f"], strict=True))
+LABELS = ["$z^2$", r"$\exp$", "$1/z$", "sphere, loxodromes", "roof, optimised"]
+LOOKS = list(zip("xosD^", [plot.GREY, plot.INK, "#7b2d8b", "#5b7fb5", "#9a5b1f"], strict=True))
 MOST = 0.9  # of the vertices of the roof
 
 
@@ -60,27 +53,25 @@ def refined(theta, theta0, sizes=SIZES):
 
 
 def deviation(V, Q, theta, theta0, unit=False, part=1.0):
-    """The deviations of the star angles from (theta, theta0) in degrees, two numbers.
+    """The largest deviations of the star angles from (theta, theta0), radians, two numbers.
 
-    The largest ones, or those that `part` of the vertices stay below; unit as in
-    `measure.star_angles`.
+    part: those that this part of the vertices stay below; unit: see `measure.star_angles`.
     """
     star = measure.star_angles(V, Q, unit)
     off = np.abs([star.theta - theta, star.theta0 - theta0])
-    return np.degrees(np.quantile(off, part, axis=1))
+    return np.quantile(off, part, axis=1)
 
 
 def table(found, theta, theta0, unit=False):
     """{name: (sizes, 2) degrees}: `deviation` of all nets; 0.9 of the vertices of the roof."""
-    return {
-        name: np.array(
-            [deviation(*n, theta, theta0, unit, MOST if name == "roof" else 1.0) for n in row]
-        )
-        for name, row in found.items()
-    }
+    rows = {}
+    for name, row in found.items():
+        part = MOST if name == "roof" else 1.0
+        rows[name] = np.degrees([deviation(*net, theta, theta0, unit, part) for net in row])
+    return rows
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     """(A) the chords at a vertex, (B) deviations against the size, (C) the numbers, in degrees.
 
@@ -97,13 +88,12 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     plot.panel(axes["A"], "A", "the chords at a vertex")
     plot.panel(axes["B"], "B", r"deviation of $\theta_0$ at vertices, degrees")
     plot.panel(axes["C"], "C", "the same with chords, in numbers")
-    exact = [
-        (*net, theta, theta0) for name, row in found.items() if name != "inverse" for net in row
-    ]
+    nets_of = [row for name, row in found.items() if name != "inverse"]
+    exact = [(*net, theta, theta0) for row in nets_of for net in row]
     claims = {f"{name}: order": _order(x) for name, x in chords.items() if name != "z2"}
-    claims["z2: largest deviation, degrees"] = round(float(chords["z2"].max()), 9)
-    data = {f"chords {k}": x for k, x in chords.items()}
-    return figure, data | {f"units {k}": x for k, x in units.items()}, exact, claims
+    claims["z2: largest deviation, degrees"] = chords["z2"].max()
+    data = {f"chords {name}": x for name, x in chords.items()}
+    return figure, data | {f"units {name}": x for name, x in units.items()}, exact, claims
 
 
 def _order(values):
@@ -133,13 +123,13 @@ def _star(ax):
 def _slopes(ax, chords, units):
     ax.set_axis_on()
     ax.set_aspect("auto")
-    for name, label in NAMES.items():
+    for name, label, (marker, colour) in zip(chords, LABELS, LOOKS, strict=True):
+        look = {"marker": marker, "color": colour, "ms": 4.5, "mfc": "white", "lw": 1.1}
         for values, style in ((chords, "-"), (units, ":")):
             off = values[name][:, 1]
             if off.max() > 1e-9:
-                mark = {"marker": MARKERS[name], "ms": 4.5, "mfc": "white", "lw": 1.1}
                 text = label if style == "-" or name == "z2" else None
-                ax.loglog(SIZES, off, style, color=_COLOUR[name], label=text, **mark)
+                ax.loglog(SIZES, off, style, label=text, **look)
     guide = 0.7 * np.array(SIZES, dtype=float) ** -2
     ax.loglog(SIZES, guide, color=plot.GREY, lw=0.9, dashes=(6, 3), label="slope $-2$")
     ax.text(8.2, 6e-4, "full lines: chords\ndotted: unit tangents", size=8)
@@ -150,12 +140,11 @@ def _slopes(ax, chords, units):
 
 
 def _numbers(ax, chords):
-    heads = ["", *(f"$m={m}$" for m in SIZES[1:]), "order"]
-    rows = [heads]
-    for name, values in chords.items():
+    rows = [["", *(f"$m={m}$" for m in SIZES[1:]), "order"]]
+    for label, values in zip(LABELS, chords.values(), strict=True):
         exact = values.max() < 1e-9
         numbers = ["exact"] * 3 if exact else [f"{x:.4f}" for x in values[1:, 1]]
-        rows.append([NAMES[name], *numbers, "" if exact else f"{_order(values):.2f}"])
+        rows.append([label, *numbers, "" if exact else f"{_order(values):.2f}"])
     ax.set(xlim=(0, 1), ylim=(-0.02, 1.0))
     ax.set_aspect("auto")
     for k, row in enumerate(rows):

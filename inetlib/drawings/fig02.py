@@ -1,19 +1,16 @@
-"""Fig. 2: what the reciprocals of the two ratios do to a parallelogram; three theta ones.
-
-Paper: Fig. 2.
-"""
+"""Fig. 2: what the reciprocals of the two ratios do to a parallelogram; three theta ones."""
 
 import numpy as np
 
 from .. import parallelogram, plot, publish
 from ..plot import DEGREE
-from .abcd import angle_at, beside, corners, frame, net, text_at
+from .abcd import angle_at, beside, corners, frame, net
 
 RATIOS = r"\lambda,\,\mu", r"1/\lambda,\,\mu", r"\lambda,\,1/\mu", r"1/\lambda,\,1/\mu"
 SURDS = {60: r"(1+\sqrt{5})/2", 45: r"(\sqrt{2}+\sqrt{6})/2", 30: r"(\sqrt{3}+\sqrt{7})/2"}
 
 
-@publish.drawn
+@publish.drawn()
 def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE, 30 * DEGREE)):
     """Four parallelograms (A-D) with reciprocal ratios, and three theta-parallelograms (E-G).
 
@@ -23,32 +20,19 @@ def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE,
 
     Paper: Fig. 2.
     """
-    pi = np.pi
-    angles = [
-        (theta, theta0),
-        (theta, pi - theta0),
-        (pi - theta, theta0),
-        (pi - theta, pi - theta0),
-    ]
+    angles = [(a, b) for a in (theta, np.pi - theta) for b in (theta0, np.pi - theta0)]
     angles += [(angle, angle) for angle in equal]
-    lam, mu = parallelogram.ratios(*np.transpose(angles))
     texts = [f"$({ratios})$" for ratios in RATIOS] + [_equal_ratio(angle) for angle in equal]
-    shapes = [corners(*pair) for pair in angles]
-    figure, ax, origins, top = _layout(shapes)
-    for k, (shape, pair, origin) in enumerate(zip(shapes, angles, origins, strict=True)):
-        heading = rf"$\mathbf{{{'ABCDEFG'[k]}}}$  {texts[k]}"
-        left = complex(shape.real.min() + origin.real, top[k])
-        ax.text(left.real, left.imag, heading, size=10, va="bottom")
-        _one(ax, shape + origin, *pair, r"1/\lambda" if k in (1, 3) else r"\lambda")
-    return (
-        figure,
-        {letter: shape for letter, shape in zip("ABCDEFG", shapes, strict=True)},
-        [net(shape, *pair) for shape, pair in zip(shapes, angles, strict=True)],
-        {
-            f"lam, mu {letter}": [round(float(x), 9) for x in pair]
-            for letter, *pair in zip("ABCDEFG", lam, mu, strict=True)
-        },
-    )
+    shapes = dict(zip("ABCDEFG", (corners(*pair) for pair in angles), strict=True))
+    figure, ax, origins, top = _layout(list(shapes.values()))
+    for k, (letter, shape) in enumerate(shapes.items()):
+        left = shape.real.min() + origins[k].real
+        ax.text(left, top[k], rf"$\mathbf{{{letter}}}$  {texts[k]}", size=10, va="bottom")
+        _one(ax, shape + origins[k], *angles[k], r"1/\lambda" if k in (1, 3) else r"\lambda")
+    nets = [net(shape, *pair) for shape, pair in zip(shapes.values(), angles, strict=True)]
+    ratios = np.transpose(parallelogram.ratios(*np.transpose(angles))).tolist()
+    claims = {f"lam, mu {letter}": pair for letter, pair in zip(shapes, ratios, strict=True)}
+    return figure, shapes, nets, claims
 
 
 def _equal_ratio(angle):
@@ -77,14 +61,14 @@ def _layout(shapes):
 def _one(ax, shape, theta, theta0, side):
     """A parallelogram with its diagonals, the values of theta at B and of theta0 at O."""
     A, B, C, D = shape
-    middle = (A + C) / 2
-    plot.polygons(ax, shape, [[0, 1, 2, 3]], plot.PALE)
+    middle, beta = (A + C) / 2, np.angle(D - B)
     frame(ax, shape)
-    beta = np.angle(D - B)
     angle_at(ax, B, C - B, A - B, 0.2)
-    text_at(ax, B + _clear(beta, 0.1, 0.38) * np.exp(0.45j * beta), _degrees(theta), 8)
+    place = B + _clear(beta, 0.1, 0.38) * np.exp(0.45j * beta)
+    plot.text(ax, place, f"${plot.degrees(theta)}$", 8)
     reach = _clear(theta0, 0.14, 0.22)  # an acute angle leaves room for its label only far from O
-    angle_at(ax, middle, D - middle, A - middle, reach - 0.12, _degrees(theta0), 0.12, 8)
+    label = f"${plot.degrees(theta0)}$"
+    angle_at(ax, middle, D - middle, A - middle, reach - 0.12, label, 0.12, 8)
     beside(ax, B, C, "1", size=8)
     beside(ax, A, B, side, size=8)
 
@@ -92,7 +76,3 @@ def _one(ax, shape, theta, theta0, side):
 def _clear(angle, radius, least):
     """How far from its apex a disc of this radius fits into the angle, at least `least`."""
     return max(radius / np.sin(angle / 2), least)
-
-
-def _degrees(angle):
-    return rf"${angle / DEGREE:.4g}\degree$"

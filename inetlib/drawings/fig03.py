@@ -1,34 +1,25 @@
-"""Fig. 3: sheared grids and their images under 1/z and z^2.
-
-Paper: Fig. 3.
-"""
+"""Fig. 3: sheared grids and their images under 1/z and z^2."""
 
 import numpy as np
 from matplotlib.collections import PathCollection
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
-from .. import conformal, measure, parallelogram, plot, publish
+from .. import conformal, parallelogram, plot, publish
+from ..plot import DEGREE
 
-RADIANS = {degrees: float(np.radians(degrees)) for degrees in (45, 50, 60, 80)}
 ROWS = [["A", "B", "C"], ["A'", "B'", "C'"], ["C_1", "C_2", "C_3"]]
 MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in range(height)]
-SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as in `grid`
+SPANS = {"A": (4, 3, 4), "B": (3, 1, 6), "C": (3, 1, 5)}  # m, first row, n as in `_grid`
+A, B, C = (80 * DEGREE, 50 * DEGREE), 45 * DEGREE, 60 * DEGREE  # the angles of the grids
 
 
-@publish.drawn
-def draw(
-    theta=RADIANS[80],
-    theta0=RADIANS[50],
-    theta1=RADIANS[45],
-    theta2=RADIANS[60],
-    cells=10,
-):
+@publish.drawn()
+def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
     """Three sheared grids, their conformal images with exact curves, and three patterns.
 
     theta, theta0: radians, the angles of the grid A; theta1 and theta2: both angles of the
     grids B and C; cells: the patterns C1 to C3 have cells x cells quads, an even number.
-
 
     Paper: Fig. 3.
     """
@@ -46,21 +37,14 @@ def draw(
     _pattern(axes["C_2"], "C_2", "under $z^2$, 0 outside", z["C2"], (7, -3))
     _pattern(axes["C_3"], "C_3", "under $z^2$, 0 inside", z["C3"])
     nets = {name: (*conformal.quads(z[name]), *angles[name[0]]) for name in z}
-    return (
-        figure,
-        z,
-        [nets[name] for name in nets if name not in ("A'", "C1")],
-        _claims(angles, nets),
-    )
+    exact = [nets[name] for name in nets if name not in ("A'", "C1")]
+    return figure, z, exact, _claims(angles, nets)
 
 
 def _grid(theta, theta0, m, first, n):
     """The grid of App. A.2: unit edges on rows at the heights first h, (first + 1) h, ...
 
-    theta, theta0: radians.  The slanted lines meet the real axis in the integers -m-1 ... -1,
-    so none of them passes through 0.  Complex (m+1, n+1).
-
-    Paper: App. A.2.
+    The slanted lines meet the real axis in the integers -m-1 ... -1, so none passes through 0.
     """
     _, mu = parallelogram.ratios(theta, theta0)
     origin = -m - 1 + first * np.exp(1j * theta0) / mu
@@ -70,10 +54,8 @@ def _grid(theta, theta0, m, first, n):
 def _patterns(theta, cells):
     """The images C1, C2, C3 of a sheared grid with both angles theta, as a dict.
 
-    The grid of unit edges stands above 0 for C1 and C2.  For C3 its centre is 0: the two
-    sheets of z^2 coincide.  ValueError for odd `cells`, where z^2 would collapse a quad.
-
-    Paper: Fig. 3.
+    The grid stands above 0 for C1 and C2.  For C3 its centre is 0: the two sheets of z^2
+    coincide.  ValueError for odd `cells`, where z^2 would collapse a quad.
     """
     if cells % 2:
         raise ValueError(f"cells = {cells}: an even number is wanted, so that 0 is a vertex in C3")
@@ -83,43 +65,28 @@ def _patterns(theta, cells):
     return {"C1": 1 / (z + 1.4j * height), "C2": (z + 0.8j * height) ** 2, "C3": z**2}
 
 
-# --- exact curves -------------------------------------------------------------------------
-
-
-def _parabolas(z):
-    """The images of the lines of a grid under z^2: matplotlib Paths, (u_paths, v_paths).
-
-    Each line becomes one quadratic Bezier curve, which is exact.
-
-    Paper: App. A.2 (z^2).
-    """
-    codes = [Path.MOVETO, Path.CURVE3, Path.CURVE3]
-    points = [np.transpose(conformal.square_bezier(*ends)) for ends in _lines(z)]
-    return tuple([Path(plot.plane(p), codes) for p in family] for family in points)
-
-
-def _arcs(z, samples=181):
-    """The images of the lines of a grid under 1/z: matplotlib Paths, (u_paths, v_paths).
-
-    The points lie on the exact circles, `samples` of them on each arc.
-
-    Paper: App. A.2 (1/z).
-    """
-    return tuple([_arc(*ends, samples) for ends in zip(*pair, strict=True)] for pair in _lines(z))
-
-
 def _lines(z):
+    """The ends of the u-lines and of the v-lines of a grid."""
     return (z[0], z[-1]), (z[:, 0], z[:, -1])
 
 
-def _arc(start, end, samples=181):
+def _parabolas(z):
+    """The images of the lines of a grid under z^2, exact quadratic Bezier curves: two families."""
+    codes = [Path.MOVETO, Path.CURVE3, Path.CURVE3]
+    points = [np.transpose(conformal.square_bezier(*ends)) for ends in _lines(z)]
+    return [[Path(plot.plane(p), codes) for p in family] for family in points]
+
+
+def _arcs(z):
+    """The images of the lines of a grid under 1/z, points on the exact circles: two families."""
+    return [[_arc(*ends) for ends in zip(*pair, strict=True)] for pair in _lines(z)]
+
+
+def _arc(start, end):
     centre, _ = conformal.inversion_circle(start, end - start)
     # Angles count from the point opposite to 0: the image of a segment never reaches 0.
     a, b = np.angle((1 / np.array([start, end]) - centre) / centre)
-    return Path(plot.plane(centre + centre * np.exp(1j * np.linspace(a, b, samples))))
-
-
-# --- panels -------------------------------------------------------------------------------
+    return Path(plot.plane(centre + centre * np.exp(1j * np.linspace(a, b, 181))))
 
 
 def _preimage(ax, name, z, theta, theta0):
@@ -133,10 +100,7 @@ def _preimage(ax, name, z, theta, theta0):
     plot.angle(ax, [feet[-1], 0], [1, 0], slant, 0.4, r"$\theta_0$", gap=2.2)
     _diagonals(ax, z)
     _origin(ax, (0, -10))
-    first, second = (f"{x:g}^\\circ" for x in np.round(np.degrees([theta, theta0]), 6))
-    both = rf"\theta=\theta_0={first}"
-    text = both if theta == theta0 else rf"\theta={first},\ \theta_0={second}"
-    plot.panel(ax, name, f"${text}$")
+    plot.panel(ax, name, f"${plot.degrees(theta, theta0)}$".replace(r"\degree", r"^\circ"))
     ax.set_aspect("equal", adjustable="datalim")
 
 
@@ -189,17 +153,13 @@ def _origin(ax, label):
 
 
 def _claims(angles, nets):
+    """The heights of the rows, and how far the two nets that are not exact are off, degrees."""
     claims = {}
     for name, (theta, theta0) in angles.items():
         _, mu = parallelogram.ratios(theta, theta0)
-        claims[f"{name}: h = sin(theta0) / mu"] = round(float(np.sin(theta0) / mu), 9)
+        claims[f"{name}: h = sin(theta0) / mu"] = np.sin(theta0) / mu
     for name in ("A'", "C1"):
-        V, Q, *asked = nets[name]
-        for what, values, target in zip(
-            ("theta", "theta0"), measure.angles(V, Q), asked, strict=True
-        ):
-            off = np.degrees(measure.spread(values, target).max_deviation)
-            claims[f"{name}: max deviation of {what}, deg (1/z is not exact)"] = round(
-                float(off), 6
-            )
+        off = np.degrees(publish.deviations([nets[name]]))
+        for what, x in zip(("theta", "theta0"), off.round(6), strict=True):
+            claims[f"{name}: max deviation of {what}, deg (1/z is not exact)"] = x
     return claims

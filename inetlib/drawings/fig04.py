@@ -3,42 +3,35 @@
 import numpy as np
 
 from .. import measure, parallelogram, plot, publish
-from ..plot import DEGREE
+from ..plot import COLOURS, DEGREE, INK
 
 GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
+LEFT, SIXTY, VIEW = (80 * DEGREE, 55 * DEGREE), 60 * DEGREE, (-100 * DEGREE, 58 * DEGREE)
 
 
-@publish.drawn
-def draw(
-    theta=80 * DEGREE,
-    theta0=55 * DEGREE,
-    alone=60 * DEGREE,
-    azimuth=-100 * DEGREE,
-    elevation=58 * DEGREE,
-):
+@publish.drawn("theta", "theta0", "alone", "azimuth", "elevation")
+def draw(theta=LEFT[0], theta0=LEFT[1], alone=SIXTY, azimuth=VIEW[0], elevation=VIEW[1]):
     """Two quads in space, seen from outside, each with its inscribed parallelogram.
 
-    theta, theta0: angles of the left quad, radians; alone: both angles of the right one;
-    azimuth, elevation: the camera, radians.
+    theta, theta0: angles of the left quad; alone: both angles of the right one; azimuth,
+    elevation: the camera; all in radians.
 
     Paper: Fig. 4.
     """
     figure, axes = plot.canvas([["A", "B"]], 7.2, 2.45)
     view = plot.camera(azimuth, elevation)
-    nets, data, claims = [], {}, {}
-    titles = {
-        "A": rf"$\theta={theta / DEGREE:.4g}\degree$, $\theta_0={theta0 / DEGREE:.4g}\degree$",
-        "B": rf"$\theta=\theta_0={alone / DEGREE:.4g}\degree$",
-    }
+    data, nets, claims = {}, [], {}
+    one, two, both = (plot.degrees(angle) for angle in (theta, theta0, alone))
+    titles = {"A": rf"$\theta={one}$, $\theta_0={two}$", "B": rf"$\theta=\theta_0={both}$"}
     for name, asked in (("A", (theta, theta0)), ("B", (alone, alone))):
         V = _quad(*asked)
-        lam, mu = (float(x[0]) for x in measure.ratios(V, FACE))
+        lam, mu = (x[0] for x in measure.ratios(V, FACE))
         _panel(axes[name], view, V)
         plot.panel(axes[name], name, rf"{titles[name]}:  $\lambda={lam:.3f}$, $\mu={mu:.3f}$")
         nets.append((V, FACE, *asked))
         data[name] = V
-        claims |= {f"lam_{name}": round(lam, 9), f"mu_{name}": round(mu, 9)}
+        claims |= {f"lam_{name}": lam, f"mu_{name}": mu}
     corners = view(np.concatenate(list(data.values())))[0]
     for ax in axes.values():
         ax.update_datalim([corners.min(axis=0) - 0.2, corners.max(axis=0) + 0.2])
@@ -47,7 +40,7 @@ def draw(
 
 
 def _quad(theta, theta0):
-    """Corners v1 ... v4 (4, 3), angles in radians; m13 has length 2 and points along x."""
+    """Corners v1 ... v4 (4, 3); m13 has length 2 and points along x."""
     rho = parallelogram.rho(*parallelogram.ratios(theta, theta0))
     d1, d2 = (np.array([w.real, w.imag, 0.0]) for w in (2 - 2 * rho, 2 + 2 * rho))
     return np.stack([GAP - d1, -GAP - d2, GAP + d1, -GAP + d2]) / 2
@@ -56,42 +49,32 @@ def _quad(theta, theta0):
 def _panel(ax, view, V):
     edges = (V + np.roll(V, -1, axis=0)) / 2  # midpoints of v1 v2, v2 v3, v3 v4, v4 v1
     flat, middle = view(V)[0], view(edges)[0]
-    ink, colours = plot.INK, plot.COLOURS
-    plot.vector(ax, flat[1], flat[3], colours["d2"], zorder=1)  # d2 runs below ...
-    plot.polygons(ax, middle, [[0, 1, 2, 3]], plot.FILL, ink, 1.2, alpha=0.6, zorder=2)
-    plot.vector(ax, middle[0], middle[2], colours["u"], zorder=3)
-    plot.vector(ax, middle[1], middle[3], colours["v"], zorder=3)
+    plot.vector(ax, flat[1], flat[3], COLOURS["d2"], zorder=1)  # d2 runs below ...
+    plot.polygons(ax, middle, [[0, 1, 2, 3]], plot.FILL, INK, 1.2, alpha=0.6, zorder=2)
+    plot.vector(ax, middle[0], middle[2], COLOURS["u"], zorder=3)
+    plot.vector(ax, middle[1], middle[3], COLOURS["v"], zorder=3)
     over = flat[0] + np.array([[0.15], [0.9]]) * (flat[2] - flat[0])
     plot.curves(ax, [over], "white", 4.5, zorder=4)
-    plot.vector(ax, flat[0], flat[2], colours["d1"], zorder=4)  # ... and d1 above the rest
-    plot.curves(ax, [flat[[0, 1, 2, 3, 0]]], ink, 1.5, zorder=5)
-    ax.plot(*flat.T, "o", color=ink, ms=3.5, zorder=6)
-    _angles(ax, view, V, edges)
-    _labels(ax, flat, middle)
-
-
-def _angles(ax, view, V, edges):
+    plot.vector(ax, flat[0], flat[2], COLOURS["d1"], zorder=4)  # ... and d1 above the rest
+    plot.curves(ax, [flat[[0, 1, 2, 3, 0]]], INK, 1.5, zorder=5)
+    ax.plot(*flat.T, "o", color=INK, ms=3.5, zorder=6)
     d1, d2, m13, m24 = (x[0] for x in measure.vectors(V, FACE))
     plot.angle(ax, edges[0], d1, d2, 0.26, camera=view)
     below = d1 / np.linalg.norm(d1) + m13 / np.linalg.norm(m13)  # off m13
-    _text(ax, view(edges[0] + 0.2 * below)[0], r"$\theta$")
+    plot.text(ax, view(edges[0] + 0.2 * below)[0], r"$\theta$", zorder=7)
     plot.angle(ax, edges.mean(axis=0), m13, m24, 0.26, r"$\theta_0$", camera=view)
+    _labels(ax, flat, middle)
 
 
 def _labels(ax, flat, middle):
     """Names of the corners, outside, and of the four vectors, beside them."""
-    centre = flat.mean(axis=0)
-    for k, point in enumerate(flat):
-        away = (point - centre) / np.linalg.norm(point - centre)
-        _text(ax, point + 0.15 * away, rf"$v_{k + 1}$")
-    _text(ax, middle[2] + [0.17, 0.02], r"$m_{13}$")
-    _text(ax, middle[3] + [0.03, 0.12], r"$m_{24}$")
-    for k, at in ((0, 0.85), (1, 0.22)):
+    places = {}
+    for k, away in enumerate(flat - flat.mean(axis=0)):
+        places[f"v_{k + 1}"] = flat[k] + 0.15 * away / np.linalg.norm(away)
+    places |= {"m_{13}": middle[2] + [0.17, 0.02], "m_{24}": middle[3] + [0.03, 0.12]}
+    for k, at, side in ((0, 0.85, 0.1), (1, 0.22, -0.1)):
         along = flat[k + 2] - flat[k]
         beside = np.array([-along[1], along[0]]) / np.linalg.norm(along)
-        aside = flat[k] + at * along + (0.1 if k == 0 else -0.1) * beside
-        _text(ax, aside, rf"$d_{k + 1}$")
-
-
-def _text(ax, point, text):
-    ax.text(*point, text, ha="center", va="center", zorder=7)
+        places[f"d_{k + 1}"] = flat[k] + at * along + side * beside
+    for name, place in places.items():
+        plot.text(ax, place, f"${name}$", zorder=7)

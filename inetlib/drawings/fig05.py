@@ -2,19 +2,24 @@
 
 import numpy as np
 from matplotlib.colors import to_rgb
-from matplotlib.patheffects import withStroke
 
 from .. import conformal, measure, mesh, parallelogram, plot, publish
-from ..plot import DEGREE
+from ..plot import COLOURS, DEGREE
 
 STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
 SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
 DISCRETE = {"u": "$f_u$", "v": "$f_v$", "d1": "$d_1$", "d2": "$d_2$"}
 LINES = {"u": "$v$ = const.", "v": "$u$ = const.", "d1": "$u+v$ = const.", "d2": "$u-v$ = const."}
-HALO = [withStroke(linewidth=2.5, foreground="white")]
+HALO = 2.5
+TITLES = {
+    "A": "four families of lines",
+    "A'": "the same lines on the surface",
+    "B": "a triangulated grid",
+    "B'": "the same grid as a mesh",
+}
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=75 * DEGREE,
     theta0=65 * DEGREE,
@@ -26,9 +31,8 @@ def draw(
 ):
     """An I-web on a catenoid with its parameter square; below, a coarse mesh on it.
 
-    theta, theta0: angles of the web, radians; lines, cells: steps of the smooth web (even)
-    and of the mesh (odd); size: of the parameter square; azimuth, elevation: the camera,
-    radians.
+    theta, theta0: angles of the web; lines, cells: steps of the smooth web (even) and of the
+    mesh (odd); size: of the parameter square; azimuth, elevation: the camera; radians.
 
     Paper: Fig. 5.
     """
@@ -46,12 +50,9 @@ def draw(
     _grid(axes["B"], cells)
     _faces(axes["B'"], view, *net)
     axes["B"].set(xlim=axes["A"].get_xlim(), ylim=axes["A"].get_ylim())
-    for ax in axes.values():
+    for name, ax in axes.items():
         ax.set_anchor("N")
-    plot.panel(axes["A"], "A", "four families of lines")
-    plot.panel(axes["A'"], "A'", "the same lines on the surface")
-    plot.panel(axes["B"], "B", "a triangulated grid")
-    plot.panel(axes["B'"], "B'", "the same grid as a mesh")
+        plot.panel(ax, name, TITLES[name])
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
     claims = {
         "sampled_net_max_deviation_deg": publish.off(*net, asked),
@@ -73,42 +74,42 @@ def _points(n):
 
 
 def _families(n, samples=2):
-    """{family: straight lines (samples, 2) through the grid points of the square}."""
+    """(family, straight line (samples, 2)) for the lines through the grid points of the square."""
     uv, t = _points(n), np.linspace(0, 1, samples)[:, None]
-    return {
-        name: [(1 - t) * uv[chain[0]] + t * uv[chain[-1]] for chain in chains]
-        for name, chains in mesh.polylines(mesh.grid_quads(n, n))._asdict().items()
-    }
+    for name, chains in mesh.polylines(mesh.grid_quads(n, n))._asdict().items():
+        for chain in chains:
+            yield name, (1 - t) * uv[chain[0]] + t * uv[chain[-1]]
 
 
 def _mesh(surface, cells):
     return surface(_points(cells)), mesh.grid_quads(cells, cells)
 
 
+def _lines(ax, n, width):
+    """The four families in the parameter square."""
+    for family in COLOURS:
+        lines = [line for name, line in _families(n) if name == family]
+        plot.curves(ax, lines, COLOURS[family], width)
+
+
 def _square(ax, n):
-    for name, lines in _families(n).items():
-        plot.curves(ax, lines, plot.COLOURS[name], 0.8)
+    _lines(ax, n, 0.8)
     for k, (name, text) in enumerate(LINES.items()):
         x, y = (0.06 if k % 2 else -0.47), -0.58 - 0.09 * (k // 2)
-        plot.curves(ax, [[(x, y), (x + 0.09, y)]], plot.COLOURS[name], 1.8)
+        plot.curves(ax, [[(x, y), (x + 0.09, y)]], COLOURS[name], 1.8)
         ax.text(x + 0.12, y, text, va="center")
     _arrows(ax, np.zeros(2), {name: np.array(s) * 1.5 / n for name, s in STEPS.items()}, SMOOTH)
 
 
 def _web(ax, view, surface, n):
-    lines = [
-        (surface(line), plot.COLOURS[name], 0.9)
-        for name, family in _families(n, 25).items()
-        for line in family
-    ]
+    lines = [(surface(line), COLOURS[name], 0.9) for name, line in _families(n, 25)]
     V, Q = _mesh(surface, 3 * n)
     plot.scene(ax, view, V, Q, plot.shade(V, Q, depth=0.25), lines)
-    step = 1e-5
-    tangents = {
-        name: (surface(step * np.array(s)) - surface(-step * np.array(s))) / (2 * step) * 1.5 / n
-        for name, s in STEPS.items()
-    }
-    flat = {name: view(t)[0] for name, t in tangents.items()}
+    flat = {}
+    for name, s in STEPS.items():
+        step = 1e-5 * np.array(s)
+        tangent = (surface(step) - surface(-step)) / 2e-5
+        flat[name] = view(tangent * 1.5 / n)[0]
     _arrows(ax, view(surface(np.zeros(2)))[0], flat, SMOOTH)
 
 
@@ -116,46 +117,34 @@ def _grid(ax, n):
     uv, Q = _points(n), mesh.grid_quads(n, n)
     middle = n // 2 * n + n // 2
     plot.polygons(ax, uv, Q[[middle]], plot.FILL, zorder=0)
-    for name, lines in _families(n).items():
-        plot.curves(ax, lines, plot.COLOURS[name], 0.9)
+    _lines(ax, n, 0.9)
     ax.plot(*uv[Q[middle]].T, "o", color=plot.INK, ms=3, zorder=6)
     ax.plot(0, 0, "o", color=plot.INK, ms=3.5, zorder=6)
-    ax.text(0, -0.045, "$p$", ha="center", va="center", path_effects=HALO, zorder=7)
+    plot.text(ax, -0.045j, "$p$", halo=HALO, zorder=7)
 
 
 def _faces(ax, view, V, Q):
     middle = len(Q) // 2
     fill = plot.shade(V, Q, depth=0.25)
     fill[middle] = to_rgb(plot.FILL)
-    lines = plot.families(V, Q, dict.fromkeys(plot.COLOURS, 1.1))
-    plot.scene(ax, view, V, Q, fill, lines)
-    corners = V[Q[middle]]
-    flat = view(corners)[0]
-    ax.plot(*flat.T, "o", color=plot.INK, ms=3, zorder=6)
-    _corners(ax, flat)
+    plot.scene(ax, view, V, Q, fill, plot.families(V, Q, dict.fromkeys(COLOURS, 1.1)))
+    corners = view(V[Q[middle]])[0]
+    ax.plot(*corners.T, "o", color=plot.INK, ms=3, zorder=6)
+    for k, turn in enumerate((1, 1, np.exp(-1.2j), np.exp(1.2j))):  # beside the ends of d1, d2
+        away = 0.28 * turn * complex(*(corners[k] - corners.mean(axis=0)))
+        plot.text(ax, complex(*corners[k]) + away, f"$v_{k + 1}$", halo=HALO, zorder=7)
     d1, d2, m13, m24 = (view(x[middle])[0] for x in measure.vectors(V, Q))
-    vectors = {"u": m13, "v": m24, "d1": d1, "d2": d2}
-    start = view(corners.mean(axis=0))[0]
-    _arrows(ax, start, vectors, DISCRETE)
-    ax.text(*(start - [0.04, -0.02]), "$f(p)$", ha="right", va="center", path_effects=HALO)
-
-
-def _corners(ax, points):
-    """Names v1 ... v4; those of v3 and v4 beside the diagonals that end there."""
-    for k, turn in enumerate((0, 0, -1.2, 1.2)):
-        away = 0.28 * np.exp(1j * turn) * complex(*(points[k] - points.mean(axis=0)))
-        place = points[k] + [away.real, away.imag]
-        ax.text(*place, f"$v_{k + 1}$", ha="center", va="center", path_effects=HALO, zorder=7)
+    start = view(V[Q[middle]].mean(axis=0))[0]
+    _arrows(ax, start, {"u": m13, "v": m24, "d1": d1, "d2": d2}, DISCRETE)
+    plot.text(ax, start - [0.04, -0.02], "$f(p)$", halo=HALO, ha="right", zorder=3)
 
 
 def _arrows(ax, start, vectors, names):
     """The four vectors from one point, each with a white border and its name at its tip."""
     for name, vector in vectors.items():
-        end, colour = start + vector, plot.COLOURS[name]
+        end = start + vector
         plot.curves(ax, [np.stack([start, start + 0.85 * vector])], "white", 4.5, zorder=3)
-        plot.vector(ax, start, end, colour, width=2.2, zorder=4)
-        size = np.linalg.norm(vector)
-        tip = end + 0.06 * np.ptp(ax.dataLim.intervaly) * vector / size
-        style = {"ha": "center", "va": "center", "path_effects": HALO, "zorder": 8, "fontsize": 11}
-        ax.text(*tip, names[name], **style)
+        plot.vector(ax, start, end, COLOURS[name], 2.2)
+        tip = 0.06 * np.ptp(ax.dataLim.intervaly) * vector / np.linalg.norm(vector)
+        plot.text(ax, end + tip, names[name], 11, HALO, zorder=8)
     ax.plot(*start, "o", color=plot.INK, ms=4, zorder=7)

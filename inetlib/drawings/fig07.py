@@ -6,72 +6,62 @@ from .. import conformal, developable, plot, publish
 from ..plot import DEGREE
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
+PANELS = [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
 HIGH = 8.2  # columns are as wide as a panel is high
 GEODESIC = ((0, 0, 0), (0.3, -0.8, 0.1), (0.6, -0.8, 0.3), (0.9, 0, 0.4))
 EDITED = ((0, 0, 0), (0.1, -1, -0.1), (0.8, -1, 0.6), (0.9, 0, 0.4))
 LIGHT = (-0.3, -1, 0.5)
-TITLES = {
-    "A": "$k=0$: sheared grid in the plane",
-    "B": "$k=1/4$",
-    "C": "$k=1/2$",
-    "D": "$k=3/4$",
-    "E": "$k=1$",
-    "F": "rotational cone",
-    "G": "Bezier geodesic",
-    "H": "moved points",
-}
+TITLES = {"A": "$k=0$: sheared grid in the plane", "B": "$k=1/4$", "C": "$k=1/2$", "D": "$k=3/4$"}
+TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "Bezier geodesic", "H": "moved points"}
 
 
-@publish.drawn
+@publish.drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=60 * DEGREE,
     theta0=45 * DEGREE,
     cells=8,
-    geodesic=GEODESIC,
-    edited=EDITED,
     azimuth=-90 * DEGREE,
     elevation=20 * DEGREE,
+    geodesic=GEODESIC,
+    edited=EDITED,
 ):
     """One net in the plane, rolled up in four steps, on a cone and along a space curve.
 
-    theta, theta0: angles of the net, radians; cells: faces each way, those along u close
-    around the cylinder of curvature k = 1; geodesic, edited: control points, scaled to the
-    length of the diagonal of the net, which becomes that curve; azimuth, elevation: the
-    camera, radians.
+    theta, theta0: angles of the net; cells: faces each way, those along u close around the
+    cylinder of curvature k = 1; azimuth, elevation: the camera; radians.  geodesic, edited:
+    control points, scaled to the length of the diagonal of the net, which becomes that curve.
 
     Paper: Fig. 7.
     """
-    asked = theta, theta0
-    z = conformal.sheared_grid(*asked, cells, cells, edge=2 * np.pi / cells)
+    z = conformal.sheared_grid(theta, theta0, cells, cells, edge=2 * np.pi / cells)
     z = z - z.mean()
-    maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")}
-    maps |= {"F": _cone(z), "G": _along(z, geodesic)[0]}
-    maps["H"] = _along(z, edited)[0]
-    figure, axes = plot.canvas(_columns(), 7.6, 3.6)
-    view = plot.camera(azimuth, elevation)
-    data, claims, nets = _stages(maps, z, asked)
-    for name, bend in maps.items():
-        _sheet(axes[name], view, bend, z)
-        plot.panel(axes[name], name, TITLES[name])
+    maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")} | {"F": _cone(z)}
+    controls = {}
     for name, points in (("G", geodesic), ("H", edited)):
-        _polygon(axes[name], view, _along(z, points)[1])
-    _same_scale(axes)
-    return figure, data, nets, claims
-
-
-def _stages(maps, z, asked):
-    """The bent nets; how far their chords are off, and the lengths of edges on the surface."""
+        maps[name], controls[name] = _along(z, points)
+    figure, axes = plot.canvas(PANELS, 7.6, 3.6)
+    view = plot.camera(azimuth, elevation)
     domain, Q = conformal.quads(z)
     data, claims = {"domain": domain}, {}
     for name, bend in maps.items():
-        data[f"net_{name}"] = bend(z).reshape(-1, 3)
-        claims[f"chords_{name}_max_deviation_deg"] = publish.off(data[f"net_{name}"], Q, asked)
-        stretch = [
-            np.linalg.norm(developable.tangent(bend, z, edge / abs(edge)), axis=-1)
-            for edge in (z[1, 0] - z[0, 0], z[0, 1] - z[0, 0])
-        ]
-        claims[f"stretch_{name}"] = round(float(np.abs(np.array(stretch) - 1).max()), 9) + 0.0
-    return data, claims, [(domain, Q, *asked)]
+        V = data[f"net_{name}"] = bend(z).reshape(-1, 3)
+        claims[f"chords_{name}_max_deviation_deg"] = publish.off(V, Q, (theta, theta0))
+        claims[f"stretch_{name}"] = _stretch(bend, z)
+        _sheet(axes[name], view, bend, z)
+        plot.panel(axes[name], name, TITLES[name])
+    for name, points in controls.items():
+        flat = view(points)[0]
+        axes[name].plot(*flat.T, "o--", color=plot.INK, ms=3.5, lw=0.8, zorder=6)
+        axes[name].update_datalim(flat)
+    _same_scale(axes)
+    return figure, data, [(domain, Q, theta, theta0)], claims
+
+
+def _stretch(bend, z):
+    """How much the map stretches the two directions of edges at most: 0 for a bending."""
+    edges = z[1, 0] - z[0, 0], z[0, 1] - z[0, 0]
+    found = [developable.tangent(bend, z, edge / abs(edge)) for edge in edges]
+    return np.abs(np.linalg.norm(found, axis=-1) - 1).max()
 
 
 def _rolling(curvature):
@@ -119,16 +109,6 @@ def _sheet(ax, view, bend, z):
 def _halves(line):
     """A polyline with the midpoints of its edges."""
     return np.insert(line, np.arange(1, len(line)), (line[1:] + line[:-1]) / 2)
-
-
-def _polygon(ax, view, points):
-    flat = view(points)[0]
-    ax.plot(*flat.T, "o--", color=plot.INK, ms=3.5, lw=0.8, zorder=6)
-    ax.update_datalim(flat)
-
-
-def _columns():
-    return [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
 
 
 def _same_scale(axes):

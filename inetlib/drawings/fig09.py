@@ -1,39 +1,32 @@
 """Fig. 9: I-nets on five isothermal surfaces, their Moebius images, both optimised to others."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from .. import moebius, plot, publish, surfaces
+from .. import conformal, measure, mesh, moebius, plot, publish, reference, solver, surfaces
 from ..plot import DEGREE
-from . import gliding, isothermal, lighter
+from ..solver.problem import Weights
+from . import isothermal
+from .lighter import lighter
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
-# rows, quads along a row, the upper left corner (u, v) in steps, the line that is highlighted
-PATCHES = {
-    "A": (8, 20, 0, 4, 13),
-    "B": (8, 20, 0, 4, 13),
-    "C": (8, 20, 0, 4, 13),
-    "D": (8, 20, -14, 4, 10),
-    "E": (8, 20, -14, 4, 10),
-}
+ROWS, COLUMNS, TOP = 8, 20, 4  # of each net; its upper edge v, in steps
+LEFT = {"A": 0, "B": 0, "C": 0, "D": -14, "E": -14}  # its left corner u, in steps
+MARKED = {"A": 13, "B": 13, "C": 13, "D": 10, "E": 10}  # the line that is highlighted
 CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 45), "E": (-15, 28)}  # degrees
-CENTRES = {
-    "A": (2.9, 0, 0.7),
-    "B": (2, -1, 1.1),
-    "C": (0.5, -3.6, 0.6),
-    "D": (2.9, 0, 0),
-    "E": (0, 0, 4.8),
-}
+CENTRES = {"A": (2.9, 0, 0.7), "B": (2, -1, 1.1), "C": (0.5, -3.6, 0.6)}  # of the inversions
+CENTRES |= {"D": (2.9, 0, 0), "E": (0, 0, 4.8)}
 IMAGE_CAMERAS = {"A": (-35, 30), "B": (-75, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
 GOALS = {2: (80 * DEGREE, 45 * DEGREE), 4: (50 * DEGREE, 50 * DEGREE)}
-TITLES = {
-    1: "(63.43\N{DEGREE SIGN}, 45\N{DEGREE SIGN})",
-    2: "(80\N{DEGREE SIGN}, 45\N{DEGREE SIGN})",
-    3: "Moebius image",
-    4: "(50\N{DEGREE SIGN}, 50\N{DEGREE SIGN})",
-}
+TITLES = {1: "(63.43*, 45*)", 2: "(80*, 45*)", 3: "Moebius image", 4: "(50*, 50*)"}  # * degrees
+# distances, printed for column 4 only and without saying in which unit
+PRINTED = {"A4": 1.959, "B4": 0.016, "C4": 38.593, "D4": 3.120, "E4": 9.464}
+MARGIN = 1.0  # the surface goes on beyond the start by this much of u and v
+WEIGHTS = Weights(fairness=0.001, closeness=0.01)  # faces of very different sizes stay so
 
 
-@publish.drawn
+@publish.drawn("t")
 def draw(around=20, t=45 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 
@@ -44,73 +37,114 @@ def draw(around=20, t=45 * DEGREE):
 
     Paper: Fig. 9.
     """
-    panels = [[f"{k}{column}" for column in TITLES] for k in NAMES]
+    panels = [[f"{letter}{column}" for column in TITLES] for letter in NAMES]
     figure, axes = plot.canvas(panels, 6.6, 7.9)
     for ax in axes.values():
         ax.set_aspect("equal", adjustable="datalim")  # titles in one line
-    nets, data, claims = [], {}, {}
-    for panel, (surface, z, marked) in _starts(around, t).items():
+    data, nets, claims = {}, [], {}
+    for panel, (surface, z) in _starts(around, t).items():
         V, Q = isothermal.sample(surface, z)
-        line = isothermal.refined(z[:, marked], 3)
-        _panel(axes[panel], panel, V, Q, surface.point(line.real, line.imag))
+        _panel(axes[panel], panel, V, Q, isothermal.curve(surface, z[:, MARKED[panel[0]]], 3))
         if panel[1] == "1":
-            nets.append((np.stack([z.real.ravel(), z.imag.ravel(), 0 * z.real.ravel()], 1), Q))
+            nets.append((*conformal.quads(z), *isothermal.ANGLES))
         data[f"net_{panel}"] = V
         off = publish.off(V, Q, isothermal.ANGLES)
         claims[f"sampled_net_{panel}_max_deviation_deg"] = off
-    nets = [(V, Q, *isothermal.ANGLES) for V, Q in nets]
     glides = optimised(around, t)
     for panel, g in glides.items():
-        V = g.result.V
-        _panel(axes[panel], panel, V, g.Q, V[g.rows[:, PATCHES[panel[0]][4]]])
+        V = data[f"net_{panel}"] = g.result.V
+        _panel(axes[panel], panel, V, g.Q, V[g.rows[:, MARKED[panel[0]]]])
         nets.append((V, g.Q, *g.angles))
-        data[f"net_{panel}"] = V
     for row in distances(glides):
         claims[f"off_surface_{row.panel}"] = round(row.off, 6)
         claims[f"hausdorff_{row.panel}"] = [round(row.there, 6), round(row.back, 6)]
     return figure, data, nets, claims
 
 
-def optimised(around=20, t=45 * DEGREE):
-    """The ten nets of columns 2 and 4 as {panel: Glide}, from "A2" and "A4" to "E4".
+class Glide(NamedTuple):
+    """A net before (`start`) and after it has glided on its surface (`result.V`)."""
 
-    around, t: as in `draw`.  A Glide holds `.start` and `.result.V`, their common quads `.Q`,
-    the wanted `.angles`, the `.reference` surface, the `.diagonal` of the start's box and all
-    of `solver.optimize`'s result.  On the cylinder, the sphere, the catenoid and their images
-    the nets are closed, as long as the patch is one full turn (around=20).
+    start: np.ndarray
+    Q: np.ndarray  # of both
+    rows: np.ndarray  # the vertex numbers, one row a v-curve
+    angles: tuple  # the wanted (theta, theta0), radians
+    reference: reference.Reference
+    result: solver.Result
+    diagonal: float  # of the box of the start
+
+
+class Row(NamedTuple):
+    """Distances of one panel, see `distances`."""
+
+    panel: str
+    printed: float | None
+    off: float
+    there: float
+    back: float
+
+
+def optimised(around=20, t=45 * DEGREE):
+    """The ten nets of columns 2 and 4 as {panel: `Glide`}, from "A2" and "A4" to "E4".
+
+    around, t: as in `draw`.  On the cylinder, the sphere, the catenoid and their images the
+    nets are closed, as long as the patch is one full turn (around=20).
 
     Paper: Fig. 9, Sec. 6.
     """
     glides = {}
-    for start, (surface, z, _) in _starts(around, t).items():
+    for start, (surface, z) in _starts(around, t).items():
         column = int(start[1]) + 1
-        glides[f"{start[0]}{column}"] = gliding.glide(surface, z, GOALS[column])
+        glides[f"{start[0]}{column}"] = _glide(surface, z, GOALS[column])
     return glides
 
 
+def _glide(surface, z, angles):
+    """The net over the grid z, optimised to the angles on the surface: a `Glide`.
+
+    Where its last column falls on the first the two are glued, and no seam can open.
+    """
+    V = surface.point(z.real, z.imag)
+    closed = np.allclose(V[:, 0], V[:, -1], rtol=0, atol=1e-9)
+    V = V[:, :-1] if closed else V
+    rows = np.arange(V[..., 0].size).reshape(V.shape[:2])
+    Q = mesh.grid_quads(*np.subtract(z.shape, 1))
+    if closed:
+        Q = np.hstack([rows, rows[:, :1]]).ravel()[Q]
+    V = V.reshape(-1, 3)
+    u, v = ((x.min() - MARGIN, x.max() + MARGIN) for x in (z.real, z.imag))
+    smooth = reference.parametric(surface.point, u, v)
+    options = {"reference": smooth, "on_surface": True, "weights": WEIGHTS, "tolerance": 1e-12}
+    result = solver.optimize(V, Q, *angles, **options)
+    return Glide(V, Q, rows, angles, smooth, result, np.linalg.norm(np.ptp(V, axis=0)))
+
+
 def distances(glides):
-    """Rows (panel, printed, off, there, back) of the nets of `optimised`, as fractions.
+    """A `Row` for each of the nets of `optimised`, as fractions; noise below 1e-9 counts as 0.
 
     off: the farthest vertex from the analytic surface; there, back: one-sided Hausdorff
     distances between the optimised net and its start (`measure.hausdorff`), which see how far
-    the border has moved too; all over the diagonal of the start's bounding box, below 1e-9 as
-    0.  printed: the paper's number, in a unit that it does not state (E16), or None.
+    the border has moved too; all over the diagonal of the start's bounding box.
+    printed: the paper's number, in a unit that it does not state (E16), or None.
 
     Paper: Fig. 9.
     """
-    return gliding.distances(glides)
+    rows = []
+    for panel, g in glides.items():
+        V = g.result.V
+        off = np.linalg.norm(g.reference.closest(V)[0] - V, axis=1).max()
+        values = np.array([off, *measure.hausdorff(V, g.Q, g.start, g.Q)]) / g.diagonal
+        rows.append(Row(panel, PRINTED.get(panel), *np.where(values < 1e-9, 0, values).tolist()))
+    return rows
 
 
 def _starts(around, t):
-    """The nets of columns 1 and 3, {panel: (surface, grid of parameters, line to highlight)}."""
-    step = 2 * np.pi / around
+    """The nets of columns 1 and 3, {panel: (surface, grid of parameters)}."""
+    step, starts = 2 * np.pi / around, {}
     found = surfaces.CYLINDER, surfaces.SPHERE, surfaces.CATENOID, surfaces.HELICOID
-    starts = {}
     for letter, surface in zip(NAMES, (*found, surfaces.conjugate(t)), strict=True):
-        m, n, left, top, marked = PATCHES[letter]
-        z = isothermal.domain(m, n, step, step * (left + 1j * top))
+        z = isothermal.domain(ROWS, COLUMNS, step, step * (LEFT[letter] + 1j * TOP))
         image = moebius.image(moebius.inversion(CENTRES[letter]), surface)
-        starts |= {f"{letter}1": (surface, z, marked), f"{letter}3": (image, z, marked)}
+        starts |= {f"{letter}1": (surface, z), f"{letter}3": (image, z)}
     return starts
 
 
@@ -120,8 +154,9 @@ def _panel(ax, panel, V, Q, curve):
     lines = plot.families(V, Q, {"v": 0.6, "u": 0.6})
     lines.append((curve, plot.COLOURS["u"], 2.2))
     scene = plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
-    lighter.lighter(scene).set_clip_on(False)  # a smaller file
+    lighter(scene).set_clip_on(False)  # a smaller file
     plot.panel(ax, f"{letter}_{column}", NAMES[letter] if column == 1 else "")
     if letter == "A":
+        title = TITLES[column].replace("*", "\N{DEGREE SIGN}")
         place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}
-        ax.annotate(TITLES[column], (0.5, 1), (0, 22), **place)
+        ax.annotate(title, (0.5, 1), (0, 22), **place)

@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from .. import moebius, plot, publish, surfaces
+from .. import conformal, moebius, plot, publish, surfaces
 from ..plot import DEGREE
 from . import isothermal
 
+CIRCLE = np.exp(2j * np.pi * np.arange(181) / 180)
 
-@publish.drawn
+
+@publish.drawn("azimuth", "elevation")
 def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 
@@ -19,41 +21,33 @@ def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     figure, axes = plot.canvas([["A", "A'"]], 6.6, 3.2)
     step = 2 * np.pi / around
     z = isothermal.domain(rows, around, step, 1j * top * step)
-    line = isothermal.refined(z[:, around * 7 // 10])
     V, Q = isothermal.sample(surfaces.SPHERE, z)
-    curve = surfaces.SPHERE.point(line.real, line.imag)
+    curve = isothermal.curve(surfaces.SPHERE, z[:, around * 7 // 10])
     flat, flat_curve = moebius.stereographic(V), moebius.stereographic(curve)
     W = np.stack([flat.real, flat.imag, 0 * flat.real], axis=1)
     _sphere(axes["A"], plot.camera(azimuth, elevation), V, Q, curve)
     _plane(axes["A'"], W, Q, flat_curve)
     plot.panel(axes["A"], "A", "on the unit sphere")
     plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
-    claims = {}
-    for name, points in (("sphere", V), ("plane", W)):
+    data, claims = {"sphere": V, "plane": W}, {}
+    for name, points in data.items():
         off = publish.off(points, Q, isothermal.ANGLES)
         claims[f"sampled_net_{name}_max_deviation_deg"] = off
-    return (
-        figure,
-        {"sphere": V, "plane": W},
-        [(np.stack([z.real.ravel(), z.imag.ravel(), 0 * W[:, 0]], 1), Q, *isothermal.ANGLES)],
-        claims,
-    )
+    return figure, data, [(*conformal.quads(z), *isothermal.ANGLES)], claims
 
 
 def _sphere(ax, view, V, Q, curve):
     lines = plot.families(V, Q, {"v": 0.7, "u": 0.7})
     lines.append((curve, plot.COLOURS["u"], 2.6))
     plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
-    outline = np.exp(2j * np.pi * np.arange(181) / 180)
-    plot.curves(ax, [outline], plot.GREY, 0.7, zorder=0)
-    north = view(np.array([[0, 0, 1.0]]))[0][0]
+    plot.curves(ax, [CIRCLE], plot.GREY, 0.7, zorder=0)
+    north = view(np.array([0, 0, 1.0]))[0]
     ax.plot(*north, "o", color=plot.INK, ms=4, zorder=7)
-    ax.text(north[0] + 0.06, north[1] + 0.02, "$N$", ha="left", va="center", zorder=7)
+    plot.text(ax, north + np.array([0.06, 0.02]), "$N$", zorder=7, ha="left")
 
 
 def _plane(ax, V, Q, curve):
     plot.polygons(ax, V, Q, plot.PALE, zorder=0)
     plot.net(ax, V, Q, width=0.7)
     plot.curves(ax, [curve], plot.COLOURS["u"], 2.6)
-    equator = np.exp(2j * np.pi * np.arange(181) / 180)
-    plot.curves(ax, [equator], plot.INK, 0.8, (0, (4, 3)), zorder=5)
+    plot.curves(ax, [CIRCLE], plot.INK, 0.8, (0, (4, 3)), zorder=5)

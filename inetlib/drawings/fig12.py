@@ -3,18 +3,13 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, plot, publish, reference, solver, surfaces, ties
+from .. import plot, publish, reference, solver, surfaces, ties
 from ..plot import DEGREE
 from . import patches
 
 RIGHT, SIXTY = 90 * DEGREE, 60 * DEGREE
-SETTINGS = {  # what is not given is found
-    "A": {},
-    "B": {"theta": RIGHT},
-    "C": {"theta0": RIGHT},
-    "D": {"theta": RIGHT, "theta0": RIGHT},
-    "E": {"theta": SIXTY, "theta0": SIXTY},
-}
+SETTINGS = {"A": {}, "B": {"theta": RIGHT}, "C": {"theta0": RIGHT}}  # what is not given is found
+SETTINGS |= {"D": {"theta": RIGHT, "theta0": RIGHT}, "E": {"theta": SIXTY, "theta0": SIXTY}}
 ITERATIONS = {"A": 12, "B": 17, "C": 17, "D": 17, "E": 17}  # of the paper's formulation
 TITLES = {
     "A": "general",
@@ -34,23 +29,15 @@ def nets(formulation="ratio", m=20, n=20, weights=patches.WEIGHTS):
     Paper: Fig. 12, Table 1.
     """
     V, Q = surfaces.freeform_patch(m, n)
-    near = reference.mesh(V, Q)
+    same = {"reference": reference.mesh(V, Q), "weights": weights, "formulation": formulation}
     found = {}
     for letter, angles in SETTINGS.items():
         way = {"iterations": ITERATIONS[letter], "via": "jump"} if formulation != "ratio" else {}
-        found[letter] = solver.optimize(
-            V,
-            Q,
-            **angles,
-            reference=near,
-            weights=weights,
-            formulation=formulation,
-            **way,
-        )
+        found[letter] = solver.optimize(V, Q, **angles, **same, **way)
     return V, Q, found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """A patch and the five isogonal nets it is optimised to, with their parallelograms.
 
@@ -63,36 +50,26 @@ def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     V, Q, found = nets(m=m, n=n)
     figure, axes = plot.canvas([["start", "A", "B"], ["C", "D", "E"]], 7.4, 5.8)
     view = plot.camera(azimuth, elevation)
-    at = _four(m, n)
-    off = np.degrees(measure.deviations(V, Q).max(axis=0))  # from their means
-    scale = Normalize(0, ties.next_multiple(off.max(), 5))
-    _panel(axes["start"], view, V, Q, at, patches.DEVIATION(scale(off))[:, :3])
+    data = {"start": V} | {f"net_{letter}": r.V for letter, r in found.items()}
+    off = {"start": patches.deviation(V, Q)}
+    off |= {k: patches.deviation(r.V, Q, r.theta, r.theta0) for k, r in found.items()}
+    scale = Normalize(0, ties.next_multiple(off["start"].max(), 5))
+    i, j = np.meshgrid(m // 2 - np.arange(2), n // 2 - np.arange(2), indexing="ij")
+    four = (i * n + j).ravel()  # faces in the middle
+    for (name, ax), W in zip(axes.items(), data.values(), strict=True):
+        colours = patches.tints(scale, off[name])
+        patches.surface(ax, view, W, Q, colours, [patches.outline(W, Q[four])])
+        patches.enlarged(ax, [0, 0, 0.42, 0.33], W, Q, four, colours[four])
     axes["start"].set_title("the start", loc="left")
     patches.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])
+    claims = {}
     for letter, result in found.items():
-        _panel(axes[letter], view, result.V, Q, at)
         plot.panel(axes[letter], letter, TITLES[letter])
         _words(axes[letter], letter, result)
+        claims |= patches.claims(letter, result, Q)
     patches.align(list(axes.values()), 0.42)
-    data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
-    return (
-        figure,
-        data,
-        [(r.V, Q, r.theta, r.theta0) for r in found.values()],
-        patches.claims(found, Q) | {"start_max_deviation_deg": round(float(off.max()), 6)},
-    )
-
-
-def _four(m, n):
-    """The numbers of four faces in the middle of the patch."""
-    i, j = np.meshgrid(m // 2 - np.arange(2), n // 2 - np.arange(2), indexing="ij")
-    return (i * n + j).ravel()
-
-
-def _panel(ax, view, V, Q, at, colours=patches.EXACT):
-    patches.surface(ax, view, V, Q, colours, [patches.outline(V, Q[at])])
-    four = colours if isinstance(colours, str) else colours[at]
-    patches.enlarged(patches.inset(ax, [0, 0, 0.42, 0.33]), V, Q, at, four)
+    claims["start_max_deviation_deg"] = round(off["start"].max(), 6)
+    return figure, data, [(r.V, Q, r.theta, r.theta0) for r in found.values()], claims
 
 
 def _words(ax, letter, result):

@@ -3,13 +3,13 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import measure, mesh, moebius, plot, publish, reference, solver, ties
+from .. import mesh, moebius, plot, publish, reference, solver, ties
 from ..plot import DEGREE
 from . import patches
 
 SIXTY = 60 * DEGREE
 SETTINGS = {"A": {"theta": SIXTY, "theta0": SIXTY}, "B": {"theta": SIXTY, "theta0": 45 * DEGREE}}
-ITERATIONS = {"A": 12, "B": 12}  # of the paper's formulation
+ITERATIONS = 12  # of the paper's formulation
 SIDES, RINGS = 6, 8
 CENTRE, RADIUS = (-0.2, 0.1, -0.25), 0.3
 MARKED = 425  # the vertex whose four faces are enlarged
@@ -25,10 +25,7 @@ def start(dome=0.45, wave=0.1):
     Paper: Fig. 13.
     """
     V, Q, polygon = mesh.polygon_rings(SIDES, RINGS)
-    z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
-    r, waves = np.abs(z), np.real((z / np.abs(z)) ** SIDES)
-    V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * waves], axis=1)
-    return V / np.linalg.norm(np.ptp(V, axis=0)), Q, polygon
+    return patches.domed(V, dome, wave, SIDES), Q, polygon
 
 
 def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
@@ -40,23 +37,16 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
     Paper: Fig. 13, Table 1.
     """
     V, Q, polygon = start(dome, wave)
-    near = reference.mesh(V, Q)
+    same = {"reference": reference.mesh(V, Q), "weights": weights, "polygons": [polygon]}
     found = {}
     for letter, angles in SETTINGS.items():
-        found[letter] = solver.optimize(
-            V,
-            Q,
-            **angles,
-            reference=near,
-            weights=weights,
-            polygons=[polygon],
-            formulation=formulation,
-            iterations=ITERATIONS[letter] if formulation != "ratio" else None,
-        )
+        most = ITERATIONS if formulation != "ratio" else None
+        way = {"formulation": formulation, "iterations": most}
+        found[letter] = solver.optimize(V, Q, **angles, **same, **way)
     return V, Q, polygon, found
 
 
-@publish.drawn
+@publish.drawn("azimuth", "elevation")
 def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     """A net with a singular hexagon, two isogonal nets from it, and their Moebius images.
 
@@ -69,47 +59,35 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     V, Q, polygon, found = nets(dome=dome, wave=wave)
     figure, axes = plot.canvas([["start", "A", "B"], ["steps", "A'", "B'"]], 7.4, 5.6)
     view = plot.camera(azimuth, elevation)
-    images = {k: moebius.apply(moebius.inversion(CENTRE, RADIUS), r.V) for k, r in found.items()}
-    off = {
-        k: np.degrees(measure.deviations(images[k], Q, r.theta, r.theta0).max(axis=0))
-        for k, r in found.items()
-    }
+    inversion = moebius.inversion(CENTRE, RADIUS)
+    images = {letter: moebius.apply(inversion, r.V) for letter, r in found.items()}
+    off = {k: patches.deviation(W, Q, found[k].theta, found[k].theta0) for k, W in images.items()}
     scale = Normalize(0, ties.next_multiple(max(x.max() for x in off.values()), 0.1))
     four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
     axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")
+    claims = {}
     for letter, result in found.items():
-        _net(axes[letter], view, result.V, Q, polygon, marked=four)
-        patches.enlarged(patches.inset(axes[letter], [0.5, 0, 0.5, 0.27]), result.V, Q, four)
-        plot.panel(axes[letter], letter, _words(**SETTINGS[letter]))
-        colours = patches.DEVIATION(scale(off[letter]))[:, :3]
-        _net(axes[letter + "'"], view, images[letter], Q, polygon, colours)
-        plot.panel(axes[letter + "'"], letter + "'", f"Moebius image of {letter}")
+        image, colours = axes[letter + "'"], patches.tints(scale, off[letter])
+        _net(axes[letter], view, result.V, Q, polygon, more=[patches.outline(result.V, Q[four])])
+        patches.enlarged(axes[letter], [0.5, 0, 0.5, 0.27], result.V, Q, four)
+        plot.panel(axes[letter], letter, f"${plot.degrees(**SETTINGS[letter])}$")
+        _net(image, view, images[letter], Q, polygon, colours)
+        plot.panel(image, letter + "'", f"Moebius image of {letter}")
+        claims |= patches.claims(letter, result, Q)
     _history(axes["steps"], found)
     patches.bar(axes["A'"], scale, [0.68, 0.9, 0.6, 0.035])
     patches.align([axes[k] for k in ("start", "A", "B")], 0.15)
     patches.align([axes[k] for k in ("A'", "B'")], 0.1)
-    numbers = {f"{k}'_max_deviation_deg": round(float(x.max()), 6) for k, x in off.items()}
-    data = {"start": V} | {f"net_{k}": r.V for k, r in found.items()}
-    data |= {f"image_{k}": W for k, W in images.items()}
-    return (
-        figure,
-        data,
-        [(r.V, Q, r.theta, r.theta0) for r in found.values()],
-        patches.claims(found, Q) | numbers,
-    )
+    claims |= {f"{letter}'_max_deviation_deg": round(x.max(), 6) for letter, x in off.items()}
+    data = {"start": V} | {f"net_{letter}": r.V for letter, r in found.items()}
+    data |= {f"image_{letter}": W for letter, W in images.items()}
+    return figure, data, [(r.V, Q, r.theta, r.theta0) for r in found.values()], claims
 
 
-def _words(theta, theta0):
-    one, two = (f"{x / DEGREE:.4g}\\degree" for x in (theta, theta0))
-    return rf"$\theta=\theta_0={one}$" if one == two else rf"$\theta={one},\ \theta_0={two}$"
-
-
-def _net(ax, view, V, Q, polygon, colours=patches.EXACT, marked=()):
+def _net(ax, view, V, Q, polygon, colours=patches.EXACT, more=()):
     corners = V[polygon]
-    lines = [(np.concatenate([corners, corners[:1]]), plot.INK, 1.0)]
-    if len(marked):
-        lines.append(patches.outline(V, Q[marked]))
+    lines = [(np.concatenate([corners, corners[:1]]), plot.INK, 1.0), *more]
     patches.surface(ax, view, V, Q, colours, lines, [(corners, HEXAGON)])
 
 

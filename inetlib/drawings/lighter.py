@@ -19,11 +19,11 @@ def lighter(collection):
     for path, fill, edge, width in zip(collection.get_paths(), faces, edges, widths, strict=True):
         if fill[3] == 0:
             waiting.append((path, tuple(edge), float(width)))
-        else:
-            if _covers(path.vertices, waiting):
-                painted += _joined(waiting)
-                waiting = []
-            painted.append((Path(path.vertices[:-1]), tuple(fill), "none", 0.0))
+            continue
+        if waiting and _covers(path.vertices, np.array([line.vertices for line, *_ in waiting])):
+            painted += _joined(waiting)
+            waiting = []
+        painted.append((Path(path.vertices[:-1]), tuple(fill), "none", 0.0))
     paths, fills, edges, widths = zip(*painted, *_joined(waiting), strict=True)
     collection.set_paths(paths)
     collection.set_facecolors(fills)
@@ -32,20 +32,16 @@ def lighter(collection):
     return collection
 
 
-def _covers(corners, waiting):
-    """Whether the face with these corners lies over one of the lines."""
-    if not waiting:
-        return False
-    ends = np.array([path.vertices for path, _, _ in waiting])
-    near = (ends.max(axis=1) > corners.min(axis=0)) & (ends.min(axis=1) < corners.max(axis=0))
+def _covers(corners, lines):
+    """Whether the face with these corners, the first one twice, lies over one of the lines."""
+    near = (lines.max(axis=1) > corners.min(axis=0)) & (lines.min(axis=1) < corners.max(axis=0))
     middle = corners[:-1].mean(axis=0)
     face = Path(middle + SHRUNK * (corners - middle))
-    return any(face.intersects_path(Path(ends[k])) for k in np.flatnonzero(near.all(axis=1)))
+    return any(face.intersects_path(Path(line)) for line in lines[near.all(axis=1)])
 
 
 def _joined(waiting):
     """One path a style, thin lines first."""
-    styles = sorted({(width, edge) for _, edge, width in waiting})
-    for width, edge in styles:
+    for width, edge in sorted({(width, edge) for _, edge, width in waiting}):
         pieces = [path for path, *style in waiting if style == [edge, width]]
         yield Path.make_compound_path(*pieces), "none", edge, width

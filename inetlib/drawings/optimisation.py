@@ -62,23 +62,18 @@ def convergence(results):
     steps with shape energies.  Returns the figure.
     """
     plot.use_style()
-    figure, pair = plt.subplots(1, 2, figsize=(7.4, 2.8))
-    axes = dict(zip(("residual", "angles"), pair, strict=True))
+    figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 2.8))
     for name, result in results.items():
-        history = result.history
-        steps = np.arange(len(history))
-        shape = np.array([s.kind == "shape" for s in history])
-        values = {
-            "residual": np.maximum([s.residual for s in history], FLOOR**2),
-            "angles": np.maximum(np.degrees([s.deviation for s in history]), FLOOR),
-        }
-        for key, y in values.items():
-            (line,) = axes[key].semilogy(steps, y, label=name, lw=1.3)
-            axes[key].plot(steps[shape], y[shape], "o", ms=3, color=line.get_color())
-            axes[key].set_xlabel("step")
-            axes[key].xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes["residual"].set_title("sum of squared residuals", loc="left")
-    axes["angles"].set_title("largest deviation of an angle, degrees", loc="left")
-    axes["angles"].axhline(1e-9, color="0.6", lw=0.7)
-    axes["residual"].legend()
+        shape = np.array([step.kind == "shape" for step in result.history])
+        residual = np.maximum([step.residual for step in result.history], FLOOR**2)
+        off = np.maximum(np.degrees([step.deviation for step in result.history]), FLOOR)
+        for ax, y in ((left, residual), (right, off)):
+            (line,) = ax.semilogy(y, label=name, lw=1.3)
+            ax.plot(np.flatnonzero(shape), y[shape], "o", ms=3, color=line.get_color())
+            ax.set_xlabel("step")
+            ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    left.set_title("sum of squared residuals", loc="left")
+    right.set_title("largest deviation of an angle, degrees", loc="left")
+    right.axhline(1e-9, color="0.6", lw=0.7)
+    left.legend()
     return figure

@@ -7,15 +7,6 @@ from matplotlib.colors import Normalize
 from .. import measure, plot
 from ..plot import DEGREE
 
-MAP = "cividis"
-
-
-def sizes(V, Q):
-    """The side of a square as large as each face, over the mean one: (f,)."""
-    d1, d2, _, _ = measure.vectors(V, Q)
-    side = np.sqrt(np.linalg.norm(np.cross(d1, d2), axis=1) / 2)
-    return side / side.mean()
-
 
 def warps(V, Q):
     """How far each face is from being planar: distance of the diagonals over their mean length."""
@@ -34,17 +25,18 @@ def panels(V, Q, curves, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """
     figure, axes = plot.canvas([["size", "planarity", "motif"]], 7.4, 3.1)
     view = plot.camera(azimuth, elevation)
-    values = {"size": sizes(V, Q), "planarity": warps(V, Q)}
+    d1, d2, _, _ = measure.vectors(V, Q)
+    side = np.sqrt(np.linalg.norm(np.cross(d1, d2), axis=1) / 2)  # of a square as large
+    values = {"size": side / side.mean(), "planarity": warps(V, Q)}
     for name, numbers in values.items():
-        scale = Normalize(numbers.min(), numbers.max())
-        mappable = ScalarMappable(scale, MAP)
+        mappable = ScalarMappable(Normalize(numbers.min(), numbers.max()), "cividis")
         fill = mappable.to_rgba(numbers)[:, :3]
-        plot.scene(axes[name], view, V, Q, fill, []).set_clip_on(False)
+        plot.scene(axes[name], view, V, Q, fill).set_clip_on(False)
         bar = axes[name].inset_axes([0.1, -0.12, 0.8, 0.05])
         figure.colorbar(mappable, cax=bar, orientation="horizontal")
     axes["size"].set_title("size, over the mean", loc="left")
     axes["planarity"].set_title("distance of the diagonals", loc="left")
     lines = [(copy, plot.INK, 0.5) for curve in curves for copy in curve]
-    plot.scene(axes["motif"], view, V, Q, plot.shade(V, Q), lines).set_clip_on(False)
+    plot.scene(axes["motif"], view, V, Q, lines=lines).set_clip_on(False)
     axes["motif"].set_title("a motif in every quad", loc="left")
     return figure

@@ -1,7 +1,4 @@
-"""What Figs. 12 and 13 share: a net in space with its parallelograms, and its enlarged middle.
-
-Paper: Fig. 12, Fig. 13.
-"""
+"""Optimised nets in space: their parallelograms, coloured by the deviation of the angles."""
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -19,43 +16,59 @@ DEVIATION = LinearSegmentedColormap.from_list("deviation", [EXACT, "#a8506a", "#
 LIGHT = (-0.45, -0.5, 0.75)
 
 
-def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=(), width=0.45, light=LIGHT):
+def domed(V, dome, wave, waves):
+    """The plane mesh on a dome with waves of this depth along its boundary, in its radii.
+
+    The bounding box gets the diagonal 1.
+    """
+    z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
+    r, wavy = np.abs(z), np.real((z / np.abs(z)) ** waves)
+    V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * wavy], axis=1)
+    return V / np.linalg.norm(np.ptp(V, axis=0))
+
+
+def deviation(V, Q, theta=None, theta0=None):
+    """The larger deviation of both angles of each face, degrees (f,); see `measure.deviations`."""
+    return np.degrees(measure.deviations(V, Q, theta, theta0).max(axis=0))
+
+
+def tints(scale, off):
+    """RGB of faces that are `off`; scale: Normalize."""
+    return DEVIATION(scale(off))[:, :3]
+
+
+def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=()):
     """Parallelograms in their colours on a light surface, u- and v-curves, and more lines.
 
     view: a `plot.camera`; colours: one, or RGB for each quad; lines: as for `plot.scene`;
     polygons: (corners (k, 3), colour) of further faces.
     """
     points, black, pale = plot.cells(V, Q, white=True)
-    fill = [shaded(points, black, colours, light), shaded(points, pale, "#f0f2f5", light, 0.3)]
+    fill = [_shaded(points, black, colours), _shaded(points, pale, "#f0f2f5", 0.3)]
     faces = np.concatenate([black, pale])
     for corners, colour in polygons:  # as thin triangles from the middle
-        extra, fan = _fan(corners, len(points))
-        points, faces = np.concatenate([points, extra]), np.concatenate([faces, fan])
-        fill.append(shaded(points, fan, colour, light, 0.2))
-    both, fill = plot.families(V, Q, {"u": width, "v": width}), np.concatenate(fill)
-    plot.scene(ax, view, points, faces, fill, [*both, *lines], lift=0.003).set_clip_on(False)
+        k, tip = np.arange(len(corners)), np.full(len(corners), len(corners))
+        fan = len(points) + np.stack([tip, tip, k, np.roll(k, -1)], axis=1)
+        points = np.concatenate([points, corners, corners.mean(axis=0)[None]])
+        faces = np.concatenate([faces, fan])
+        fill.append(_shaded(points, fan, colour, 0.2))
+    lines = [*plot.families(V, Q, {"u": 0.45, "v": 0.45}), *lines]
+    plot.scene(ax, view, points, faces, np.concatenate(fill), lines, 0.003).set_clip_on(False)
 
 
-def shaded(V, faces, colours, light=LIGHT, depth=0.45):
-    """RGB of the faces: `plot.shade` with one colour a face, or one for all."""
-    grey = plot.shade(V, faces, "white", light, depth)
+def _shaded(V, faces, colours, depth=0.45):
+    grey = plot.shade(V, faces, "white", LIGHT, depth)
     return grey * (to_rgb(colours) if isinstance(colours, str) else colours)
 
 
-def _fan(corners, start):
-    """Vertices and faces (k, 4) of the triangles from the mean of the corners to its sides."""
-    k = np.arange(len(corners))
-    tip = np.full(len(corners), start + len(corners))
-    faces = np.stack([tip, tip, start + k, start + np.roll(k, -1)], axis=1)
-    return np.concatenate([corners, corners.mean(axis=0)[None]]), faces
+def enlarged(ax, box, V, Q, faces, colours=EXACT):
+    """A picture inside a panel: some faces with their 4-web in their mean plane.
 
-
-def enlarged(ax, V, Q, faces, colours=EXACT):
-    """Some faces with their 4-web in their mean plane: what the parallelograms look like.
-
-    faces: numbers; colours: one, or RGB for each of them.
+    box: of `inset_axes`; faces: numbers; colours: one, or RGB for each of them.
     """
-    Q = Q[faces]
+    ax, Q = ax.inset_axes(box), Q[faces]
+    ax.set_axis_off()
+    ax.set_aspect("equal")
     d1, d2, m13, _ = measure.vectors(V, Q)
     normal, right = (x.mean(axis=0) for x in (np.cross(d1, d2), m13))
     up = np.cross(normal, right)
@@ -71,10 +84,10 @@ def enlarged(ax, V, Q, faces, colours=EXACT):
         plot.curves(ax, lines, plot.COLOURS[name], 1.3)
 
 
-def outline(V, quads):
+def outline(V, quads, colour=plot.INK, width=1.3):
     """The boundary of some faces as a line for `plot.scene`."""
     rim = V[mesh.boundary_loops(quads)[0]]
-    return np.concatenate([rim, rim[:1]]), plot.INK, 1.3
+    return np.concatenate([rim, rim[:1]]), colour, width
 
 
 def bar(ax, scale, box):
@@ -95,23 +108,13 @@ def align(axes, below):
         ax.set(xlim=(x - width / 2, x + width / 2), ylim=(top - (1 + below) * height, top))
 
 
-def inset(ax, box):
-    """An empty picture inside a panel; box: of `inset_axes`."""
-    found = ax.inset_axes(box)
-    found.set_axis_off()
-    found.set_aspect("equal")
-    return found
-
-
-def claims(found, Q):
-    """Steps, flips, angles and area ratio of each net for the manifest; found: {name: Result}."""
-    numbers = {}
-    for name, result in found.items():
-        quality = measure.quality(result.V, Q)
-        numbers[f"{name}_steps"] = len(result.history) - 1
-        numbers[f"{name}_flips"] = int(quality.flips)
-        numbers[f"{name}_area_ratio"] = round(quality.area_ratio, 6)
-        for angle in ("theta", "theta0"):
-            degrees = float(np.degrees(getattr(result, angle)))
-            numbers[f"{name}_{angle}_deg"] = round(degrees, 6)
-    return numbers
+def claims(name, result, Q):
+    """Steps, flips, area ratio and angles of a `solver.Result` for the manifest."""
+    quality = measure.quality(result.V, Q)
+    return {
+        f"{name}_steps": len(result.history) - 1,
+        f"{name}_flips": quality.flips,
+        f"{name}_area_ratio": round(quality.area_ratio, 6),
+        f"{name}_theta_deg": round(float(np.degrees(result.theta)), 6),
+        f"{name}_theta0_deg": round(float(np.degrees(result.theta0)), 6),
+    }

@@ -11,11 +11,7 @@ SLOTS = {"u": [(1, 2), (0, 3)], "v": [(1, 0), (2, 3)], "d1": [(0, 2)], "d2": [(1
 
 
 def web(ax, view, net, families=("u", "v", "d1", "d2"), width=0.8):
-    """The families of a web on a light surface.
-
-    view: a `plot.camera` that looks from above;
-    families: of u, v, d1 and d2; width: points.
-    """
+    """The families of a web on a light surface; view: a `plot.camera` that looks from above."""
     Q = net.Q[facing(view, net.V, net.Q)]
     fill = plot.shade(net.V, Q, "white", depth=0.2)
     paint(ax, view, net, (net.V, Q), fill, lines(net.V, Q, families, width))

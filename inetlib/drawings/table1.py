@@ -5,7 +5,8 @@ import io
 
 import numpy as np
 
-from .. import measure, publish
+from .. import publish
+from ..design import report
 from ..solver.problem import PAPER
 from . import fig12, fig13, patches
 
@@ -60,23 +61,18 @@ def rows(variants):
 
 
 def _row(Q, found):
-    residual = found.history[-1].residual
-    quality = measure.quality(found.V, Q)
-    pairs = zip(measure.angles(found.V, Q), (found.theta, found.theta0), strict=True)
-    spreads = [measure.spread(a, target) for a, target in pairs]
+    numbers = report.report(found.V, Q, theta=found.theta, theta0=found.theta0)
+    spreads = numbers.theta, numbers.theta0
     off = [s.max_deviation for s in spreads] + [s.mean_deviation for s in spreads]
+    residual = found.history[-1].residual
     return [
         *map(str, (len(Q), *found.sizes)),
         f"{residual:.0e}" if residual > NOISE else "< 1e-20",
         str(len(found.history) - 1),
-        *(_degrees(x) for x in np.degrees(off)),
-        str(quality.flips),
-        f"{quality.area_ratio:.3f}",
+        *(f"{x:.2g}" if x > 1e-9 else "< 1e-9" for x in np.degrees(off)),
+        str(numbers.flips),
+        f"{numbers.area_ratio:.3f}",
     ]
-
-
-def _degrees(x):
-    return f"{x:.2g}" if x > 1e-9 else "< 1e-9"
 
 
 def markdown(lines):
