@@ -26,7 +26,16 @@ def unit(direction: complex) -> complex:
     return direction / abs(direction)
 
 
-def sheared_grid(theta, theta0, m, n, origin=0, edge=1.0, direction=1, kappa=0) -> np.ndarray:
+def sheared_grid(
+    theta: float,
+    theta0: float,
+    m: int,
+    n: int,
+    origin: complex = 0,
+    edge: float = 1.0,
+    direction: complex = 1,
+    kappa: complex = 0,
+) -> np.ndarray:
     """A planar grid of congruent cells with (theta, theta0)-parallelograms inside.
 
     Its lines meet at theta0 and the diagonals of its cells at theta.  z[i, j] = origin + i u + j v

@@ -7,7 +7,7 @@ from . import mesh
 from .parallelogram import check_whole
 
 
-def wavy_roof(n: int = 40):
+def wavy_roof(n: int = 40) -> tuple[np.ndarray, np.ndarray]:
     """A roof of 3 by 2 with waves, about n by 2 n / 3 squares of two triangles; n >= 2."""
     n = check_whole("n", n, 2)
     m = max(2, round(2 * n / 3))
@@ -16,7 +16,7 @@ def wavy_roof(n: int = 40):
     return mesh.triangles(np.stack([x, y, z], axis=-1).reshape(-1, 3), mesh.grid_quads(n, m))
 
 
-def saddle_with_hole(n: int = 20):
+def saddle_with_hole(n: int = 20) -> tuple[np.ndarray, np.ndarray]:
     """The saddle z = 0.4 (x^2 - y^2) between the radii 0.35 and 1: a ring of n by 5 n squares."""
     n = check_whole("n", n, 2)
     radius = np.linspace(0.35, 1, n + 1)[:, None]
@@ -27,7 +27,7 @@ def saddle_with_hole(n: int = 20):
     return mesh.triangles(V, _cells(np.hstack([index, index[:, :1]])))
 
 
-def hanging_shell(n: int = 30):
+def hanging_shell(n: int = 30) -> tuple[np.ndarray, np.ndarray]:
     """A square cloth of n by n squares that hangs from its four corners, turned upside down.
 
     The edges are springs of no length, stronger at the border: equilibrium is one linear system.
@@ -53,7 +53,7 @@ def hanging_shell(n: int = 30):
 SURFACES = {"roof": wavy_roof, "saddle": saddle_with_hole, "shell": hanging_shell}
 
 
-def vertex(valence: int, rings: int):
+def vertex(valence: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A vertex of any valence >= 3 in `rings` rings of quads: (V, Q), vertex 0 is the middle.
 
     V: z = 0, images of square lattices under z^(4/valence).  Q: oriented, not labelled.
@@ -71,7 +71,7 @@ def vertex(valence: int, rings: int):
     return V / np.hypot(V[:, 0], V[:, 1]).max(), np.concatenate(Q)
 
 
-def polar_cap(sides: int, rings: int):
+def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A polygon whose corners have valence 3, in `rings` rings of `sides` quads: (V, Q, polygon).
 
     u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0, the radii in a
@@ -88,7 +88,9 @@ def polar_cap(sides: int, rings: int):
     return V, Q, index[:, 0]
 
 
-def moebius_strip(length: int = 24, width: int = 3, reach: float = 0.45):
+def moebius_strip(
+    length: int = 24, width: int = 3, reach: float = 0.45
+) -> tuple[np.ndarray, np.ndarray]:
     """A strip of length x width quads, closed with half a twist: (V, Q), `width` rows.
 
     The middle curve is the unit circle, reach is half the width.  No orientation exists.
@@ -110,7 +112,7 @@ def _cells(index):
     return index.ravel()[mesh.grid_quads(m - 1, n - 1)]
 
 
-def seam(Q: np.ndarray):
+def seam(Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(faces (f, 4), edges (k, 2)): Q with u and v named from face to face, and where they clash.
 
     The names start at face 0 and spread breadth first; the mesh can be labelled exactly when

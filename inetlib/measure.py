@@ -146,7 +146,9 @@ def spread(values: ArrayLike, target: ArrayLike | None = None) -> Spread:
     return Spread(*map(float, (mean, values.min(), values.max(), off.max(), off.mean())))
 
 
-def deviations(V: ArrayLike, Q: ArrayLike, theta=None, theta0=None) -> np.ndarray:
+def deviations(
+    V: ArrayLike, Q: ArrayLike, theta: float | None = None, theta0: float | None = None
+) -> np.ndarray:
     """|theta - wanted| and |theta0 - wanted| of every face, (2, f); for None from the mean."""
     found, wanted = np.stack(angles(V, Q)), (theta, theta0)
     means = [x.mean() if a is None else a for x, a in zip(found, wanted, strict=True)]
@@ -206,7 +208,7 @@ class Hausdorff(NamedTuple):
     back: float
 
 
-def hausdorff(V: ArrayLike, Q: ArrayLike, W: ArrayLike, R: ArrayLike, refine=1) -> Hausdorff:
+def hausdorff(V: ArrayLike, Q: ArrayLike, W: ArrayLike, R: ArrayLike, refine: int = 1) -> Hausdorff:
     """The largest distance of a vertex of V, Q from the surface W, R, and the other way.
 
     The faces are cut into triangles, or are triangles.  Both are lower bounds of the distances

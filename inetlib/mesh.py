@@ -235,7 +235,7 @@ def is_labelled(Q: ArrayLike) -> bool:
     return not np.any((twin >= 0) & ((twin - np.arange(twin.size)) % 2 == 1))
 
 
-def require_labels(Q):
+def require_labels(Q: np.ndarray) -> None:
     """ValueError unless the faces agree on u and v."""
     if not is_labelled(Q):
         raise ValueError("the faces do not agree on u and v: call mesh.label first")

@@ -9,6 +9,7 @@ Angles are radians.  Numbers out of range raise ValueError; sympy symbols go thr
 formulas unchecked, so what runs is what the notebooks prove.
 """
 
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy as np
 Number = Any  # a float, an array of them that broadcasts, or a sympy expression
 
 
-def library(*values: Number):
+def library(*values: Number) -> ModuleType:
     """sympy when a value is symbolic, else numpy: both spell acos, atan2, asinh alike."""
     if any(hasattr(value, "free_symbols") for value in values):
         import sympy

@@ -5,6 +5,7 @@ v4 - v2 = K (v3 - v1) with K = lam exp(i theta).  It is linear, so the nets on a
 vector space, from which `planar_net` picks the smoothest or the closest.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,15 @@ class Planar(NamedTuple):
     message: str  # all this in words
 
 
-def planar_net(Q, theta, theta0, handles=None, boundary=None, start=None, smooth=0.01) -> Planar:
+def planar_net(
+    Q: np.ndarray,
+    theta: float,
+    theta0: float,
+    handles: Sequence | None = None,
+    boundary: object = None,
+    start: np.ndarray | None = None,
+    smooth: float = 0.01,
+) -> Planar:
     """The smoothest isogonal net in the plane through given points, as a `Planar`.
 
     Q (f, 4): any consistently labelled connected mesh.  Points are complex numbers, (k, 2) or

@@ -1,7 +1,7 @@
 """Meshes and analytic surfaces as references: closest points, and how the surface runs there."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 import igl
 import numpy as np
@@ -18,7 +18,7 @@ MARGIN = 0.1  # how far an analytic surface goes on beyond its domain, as a part
 STEP = 1 / 2000  # of the finite differences, as a part of the domain
 
 
-def no_boundary(points):
+def no_boundary(points: np.ndarray) -> NoReturn:
     """The `Reference.boundary` of a surface without one: ValueError."""
     raise ValueError("the reference has no boundary: it is closed, or no `reference.mesh`")
 
@@ -181,7 +181,7 @@ def _barycentric(p, a, b, c):
     return np.stack([1 - second - third, second, third], axis=1)
 
 
-def parametric(point: Callable, u: tuple, v: tuple, tangents=None) -> Reference:
+def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = None) -> Reference:
     """The `Reference` of the surface point(u, v) over u[0] <= u <= u[1], v[0] <= v <= v[1].
 
     point     takes two arrays of one shape, returns points (..., 3), smooth in u and v

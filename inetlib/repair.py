@@ -1,5 +1,6 @@
 """The one place where a surface is checked and repaired; each step returns what it did."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +46,7 @@ def clean(V: np.ndarray, F: np.ndarray) -> Clean:
     return Clean(W, G, loops, said)
 
 
-def manifold(V: np.ndarray, F, merge: bool = True):
+def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     """Faces F of any sizes as an oriented manifold of triangles: (V, T (t, 3), sentences).
 
     With `merge`, vertices at one place become one where the surface stays a manifold.
@@ -96,7 +97,7 @@ def _counted(done):
     return [f"{what}: {count}" for what, count in done.items() if count]
 
 
-def merge(V: np.ndarray, F: np.ndarray, tolerance: float):
+def merge(V: np.ndarray, F: np.ndarray, tolerance: float) -> tuple:
     """(faces F with the first of the vertices at each place only, how many others went).
 
     tolerance: how close vertices are at one place, as a part of the bounding box of the faces.
@@ -110,7 +111,7 @@ def merge(V: np.ndarray, F: np.ndarray, tolerance: float):
     return used[first[place[corner]]].reshape(F.shape), len(used) - len(first)
 
 
-def drop(T: np.ndarray):
+def drop(T: np.ndarray) -> tuple:
     """(triangles with three different corners, each once; how many went); ValueError for none."""
     corners = np.sort(T, axis=1)
     good = np.diff(corners).all(axis=1)
@@ -121,7 +122,7 @@ def drop(T: np.ndarray):
     return T[kept], len(T) - len(kept)
 
 
-def orient(T: np.ndarray):
+def orient(T: np.ndarray) -> tuple:
     """(triangles oriented alike, how many were turned): the more frequent side of a piece wins.
 
     ValueError for edges of more than two triangles and for one-sided surfaces.
@@ -148,7 +149,7 @@ def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
     return normal / area[:, None]
 
 
-def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray):
+def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     """ValueError where two fans of triangles share a vertex only; twin: `mesh.opposites(T)`."""
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
@@ -213,7 +214,7 @@ def _place(point):
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
-def weld(V: np.ndarray, F: np.ndarray):
+def weld(V: np.ndarray, F: np.ndarray) -> tuple:
     """The mesh with equal points as one vertex, in the order of their first use: (V, F).
 
     V: (n, 3), F: integers of any shape.  Unused vertices go.
@@ -223,7 +224,7 @@ def weld(V: np.ndarray, F: np.ndarray):
     return V[F.ravel()[first[order]]], np.argsort(order)[place.ravel()].reshape(F.shape)
 
 
-def triangulate(V: np.ndarray, F) -> np.ndarray:
+def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
     """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
     Quads are cut along the shorter diagonal, larger polygons ear by ear.  ValueError where no

@@ -4,6 +4,7 @@ Every conformal map of a sheared grid is nearly an isogonal net for every pair o
 the optimisation that follows moves the vertices only a little along the surface.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -54,7 +55,7 @@ def cover(
     optimise: bool = True,
     tolerance: float = 1e-11,
     progress: bool = False,
-    callback=None,
+    callback: Callable | None = None,
 ) -> Cover:
     """The surface V (n, 3), F triangles (f, 3) or quads (f, 4), covered by a net: a `Cover`.
 

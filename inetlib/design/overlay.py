@@ -47,7 +47,14 @@ class Domain:
         return inside, np.einsum("kc,kcx->kx", weights, self.space[self.flat.F[face]])
 
 
-def cover(domain: Domain, theta, theta0, count=None, size=None, direction=0.0) -> Layer:
+def cover(
+    domain: Domain,
+    theta: float,
+    theta0: float,
+    count: int | None = None,
+    size: float | None = None,
+    direction: float = 0.0,
+) -> Layer:
     """The `Layer` of about `count` quads, or of edges of mean length `size`, over a `Domain`.
 
     direction: of the u-lines against the real axis, radians.  Over a ring both are changed as

@@ -1,11 +1,13 @@
 """The numbers of a net, made in one place: angles, shape, and how well it covers a surface."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import igl
 import numpy as np
 
 from .. import measure, mesh, reference
+from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
 
@@ -73,7 +75,13 @@ class Report(NamedTuple):
 
 
 def report(
-    V: np.ndarray, Q: np.ndarray, polygons=(), lam=None, mu=None, theta=None, theta0=None
+    V: np.ndarray,
+    Q: np.ndarray,
+    polygons: Sequence = (),
+    lam: float | None = None,
+    mu: float | None = None,
+    theta: float | None = None,
+    theta0: float | None = None,
 ) -> Report:
     """The `Report` of a labelled net V (n, 3), Q (f, 4).
 
@@ -86,18 +94,21 @@ def report(
     quality = measure.quality(V, Q)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
-    return Report(
-        len(np.unique(Q)),
-        len(Q),
-        tuple(sorted(len(polygon) for polygon in polygons)),
-        wanted,
-        *spreads,
-        *(quality.flips, quality.area_ratio, quality.aspect, quality.planarity),
-        *(float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min())),
-    )
+    corners = tuple(sorted(len(polygon) for polygon in polygons))
+    shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
+    sizes = (float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
+    known = len(np.unique(Q)), len(Q), corners, wanted, *spreads, *shape, *sizes
+    return Report(*known)
 
 
-def survey(V: np.ndarray, Q: np.ndarray, theta: float, theta0: float, goal, flat) -> Report:
+def survey(
+    V: np.ndarray,
+    Q: np.ndarray,
+    theta: float,
+    theta0: float,
+    goal: reference.Reference,
+    flat: Flat,
+) -> Report:
     """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
     net = reference.mesh(V, Q)
