@@ -51,6 +51,9 @@ def hanging_shell(n=30):
     return mesh.triangles(V, Q)
 
 
+SURFACES = {"roof": wavy_roof, "saddle": saddle_with_hole, "shell": hanging_shell}
+
+
 def _at_least(n, low):
     if not (n >= low and int(n) == n):
         raise ValueError(f"n = {n}: a whole number of at least {low} is wanted")
