@@ -76,7 +76,7 @@ class Session:
         self.stop()
         self.run = None
         if not self.given:
-            self._settle(self.choice, *_try(lambda: nets.construct(self.choice)))
+            self._settle(self.choice, *_try(lambda: nets.make(self.choice)))
 
     def _settle(self, choice, made, problem):
         self.problem = problem
@@ -109,7 +109,7 @@ class Session:
                 seen(V, Q, self.steps)
             return not run.stopped
 
-        found = _try(lambda: nets.find(run.choice, self.surface, after))
+        found = _try(lambda: nets.make(run.choice, self.surface, after))
         if run is self.run:
             self._settle(run.choice, *found)
             self.run = None
