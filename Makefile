@@ -23,7 +23,7 @@ help:
 	@echo "make explore       turn the angles of nets in your browser (FILE=surface.obj for your own)"
 	@echo "make notebooks     open the notebooks in JupyterLab, on this machine only"
 	@echo "make bench         seconds, memory and accuracy of the optimisation, some minutes"
-	@echo "make lint          ruff: format and lint"
+	@echo "make lint          ruff: format and lint; mypy: the types in the library"
 	@echo "make clean         remove the environments"
 
 $(READY): pyproject.toml constraints.txt tools/setup.py
@@ -62,6 +62,7 @@ bench: $(READY)
 lint: $(READY)
 	$(BIN)/ruff format .
 	$(BIN)/ruff check .
+	$(BIN)/mypy
 
 clean:
 	$(PYTHON) tools/setup.py --remove

@@ -53,9 +53,6 @@ COLUMNS = (
 )
 
 
-# --- one case, in a process of its own --------------------------------------------------
-
-
 def run_case(case, setting, quads, repeats):
     """The measured numbers of one case, medians over the repeats, as a dict."""
     side = round(quads**0.5)
@@ -134,9 +131,6 @@ def coarse_to_fine(V, Q, setting):
     step = time.perf_counter() - start
     steps = sum(step.kind != "start" for step in result.history)
     return {"result": result, "steps": steps, "step": step, "angle": step, "whole": whole}
-
-
-# --- all cases --------------------------------------------------------------------------
 
 
 def child(case, setting, quads, repeats, limit):
@@ -253,7 +247,7 @@ the ratios by splu at 100 000.  peak MB: of the whole process.  x: times faster 
 paper's formulation with SciPy's spsolve; step: mean of all steps, angle: angle steps only."""
 
 
-def main():
+def options(words=None):
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     sizes = [400, 10_000, 100_000, 1_000_000]
     parser.add_argument("--sizes", type=int, nargs="+", default=sizes, help="numbers of quads")
@@ -262,9 +256,14 @@ def main():
     parser.add_argument("--skip-paper", action="store_true", help="no baseline")
     parser.add_argument("--limit", type=float, default=180, help="seconds a case, at most")
     parser.add_argument("--case", choices=CASES, help="only this one, here, as JSON")
-    given = parser.parse_args()
+    given = parser.parse_args(words)
     if min(given.sizes) < 4 or given.repeats < 1:
         parser.error("at least 4 quads and one repeat are wanted")
+    return given
+
+
+def main():
+    given = options()
     if given.case:
         print(json.dumps(run_case(given.case, given.settings[0], given.sizes[0], given.repeats)))
         return

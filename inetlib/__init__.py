@@ -10,7 +10,6 @@ from importlib import import_module
 
 __all__ = [
     "NotConverged",
-    "clean",
     "conformal",
     "design",
     "developable",

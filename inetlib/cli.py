@@ -1,80 +1,93 @@
 """The command line `inet`: measure, cover, web, optimize, explore, figures.
 
-Wrong input is found before the work begins and becomes one sentence on stderr; a file is
-written only after everything went well.
+Angles are degrees on it, and radians from the parser on.  Wrong input becomes one sentence,
+before the work begins and anything slow is loaded; files are written after all went well.
 """
 
+import argparse
 import contextlib
 import functools
 import importlib
 import json
+import math
 import os
+import re
 import sys
 import warnings
 import webbrowser
 from pathlib import Path
 
-import numpy as np
-
-from . import (
-    clean,
-    design,
-    examples,
-    files,
-    io,
-    loxodrome,
-    mesh,
-    options,
-    paths,
-    reference,
-    solver,
-    surfaces,
-)
-from .design import report
-from .mesh import boundary_loops
+from . import __version__, files
 
 DONE, NOT_FOUND, WRONG, STOPPED = 0, 1, 2, 130
-PROFILES = {
-    "sphere": surfaces.sphere_profile,
-    "torus": surfaces.torus_profile,
-    "catenoid": surfaces.catenoid_profile,
-    "vase": surfaces.vase_profile,
-    "cone": lambda: surfaces.cone_profile(np.radians(30)),
-}
-SURFACES = {
-    "roof": examples.wavy_roof,
-    "saddle": examples.saddle_with_hole,
-    "shell": examples.hanging_shell,
-}
 ROOT = Path(__file__).resolve().parent.parent
+DESCRIPTION = """\
+Isogonal nets: quad meshes whose mid-edge parallelograms are all similar.
+
+theta is the angle between the diagonals of a quad, theta0 the angle between the lines
+that join the midpoints of opposite sides; both in degrees, the same in every quad."""
+EPILOG = """\
+examples:
+  inet web --profile vase --theta 75 --theta0 60 -m 24 -o vase.obj
+  inet measure vase.obj --theta 75 --theta0 60
+
+exit codes: 0 done; 1 no net with these angles was found; 2 wrong input, nothing was
+written; 130 stopped by Ctrl-C.  `inet COMMAND --help` shows the options of a command."""
+TEXTS = {  # what a command does, and examples
+    "measure": [
+        "How well a quad mesh keeps two angles, and its quality.",
+        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
+        "inet measure web.obj --theta 60 --theta0 45",
+        "inet measure web.obj --json",
+    ],
+    "cover": [
+        "Cover a surface from a file with a net of two given angles.",
+        "inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj",
+        "inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json",
+    ],
+    "web": [
+        "An exact net on a surface of revolution.",
+        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
+        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 10 -o vase.ply",
+    ],
+    "optimize": [
+        "Change a quad mesh into a net with the angles you want.",
+        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj",
+        "inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj",
+    ],
+    "explore": [
+        "Turn the angles of a net in the browser, on this machine only.",
+        "inet explore",
+        "inet explore roof.obj --port 8000 --open",
+    ],
+    "figures": [
+        "Rerun the notebooks and redraw their figures (in a clone).",
+        "inet figures fig05",
+        "inet figures 3_1 4",
+    ],
+}
 
 
-class Off(Exception):
-    """No net with the angles was found; the sentence says what was done instead."""
+class Parser(argparse.ArgumentParser):
+    """argparse, with one sentence on stderr for a mistake, and no usage text around it."""
+
+    def error(self, message):
+        """One sentence and exit code 2."""
+        self.exit(WRONG, f"inet: {message} (see {self.prog} --help)\n")
 
 
-def main(arguments=None):
-    """Run `inet` with a list of arguments, or those of the process: the exit code.
-
-    0 done, 1 no net with these angles was found, 2 wrong input, 130 stopped by Ctrl-C.
-    """
+def main(arguments: list[str] | None = None) -> int:
+    """Run `inet` with these arguments, or those of the process: the exit code, see `EPILOG`."""
+    words = sys.argv[1:] if arguments is None else arguments
     try:
-        given = options.parser().parse_args(arguments)
+        given = parser(words).parse_args(words)
     except SystemExit as end:  # help, the version, or a mistake that was already told
         return end.code
-    commands = {
-        "measure": _measure,
-        "cover": _cover,
-        "web": _web,
-        "optimize": _optimize,
-        "explore": _explore,
-        "figures": _figures,
-    }
     written = len(files.WRITTEN)
     try:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            code = commands[given.command](given)
+            code = COMMANDS[given.command][0](given)
         sys.stdout.flush()
         return code
     except KeyboardInterrupt:
@@ -83,123 +96,270 @@ def main(arguments=None):
     except BrokenPipeError:  # the reader of our output went away, for example `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
-    except Off as words:
-        return _tell(words, NOT_FOUND)
     except (ValueError, OSError, ImportError, RuntimeError, ArithmeticError) as error:
-        return _tell(_sentence(error), WRONG)
+        return _tell(error, WRONG)
     except MemoryError:
         return _tell("there is not enough memory for this: ask for fewer quads", WRONG)
 
 
 def _tell(words, code):
-    print("inet:", " ".join(str(words).split()), file=sys.stderr)
+    if isinstance(words, OSError) and words.strerror and words.filename is not None:
+        words = f"{words.filename}: {words.strerror}"
+    print("inet:", " ".join((str(words) or type(words).__name__).split()), file=sys.stderr)
     return code
 
 
-def _sentence(error):
-    if isinstance(error, OSError) and error.strerror and error.filename is not None:
-        return f"{error.filename}: {error.strerror}"
-    return str(error) or type(error).__name__
+def parser(words: list[str]) -> Parser:
+    """The parser of the command line, with the options of the commands among the words."""
+    style = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
+    top = Parser(prog="inet", description=DESCRIPTION, epilog=EPILOG, **style)
+    top.add_argument("--version", action="version", version=f"inet {__version__}")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    for name, (text, *examples) in TEXTS.items():
+        short = text[0].lower() + text[1:-1]
+        epilog = "\n  ".join(["examples:", *examples])
+        command = commands.add_parser(name, help=short, description=text, epilog=epilog, **style)
+        if name in words:
+            COMMANDS[name][1](command)
+    return top
 
 
-# --- the commands -------------------------------------------------------------------------
+def _number(wanted, allowed, made=float):
+    """An argparse type: what `made` makes of a finite number that is allowed."""
+
+    def read(text):
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and allowed(value)):
+            raise argparse.ArgumentTypeError(f"{text} is given, {wanted} is wanted")
+        return made(value)
+
+    return read
+
+
+_angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180, math.radians)
+_turn = _number("a finite number", lambda x: True, math.radians)
+_tolerance = _number("a positive number", lambda x: x > 0, math.radians)
+_positive = _number("a positive number", lambda x: x > 0)
+_whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
+_port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
+
+
+def _angle_options(command, words, required=False):
+    for name, what in (("--theta", "the diagonals"), ("--theta0", "the medial lines")):
+        text = f"angle between {what}, degrees{words}"
+        command.add_argument(name, type=_angle, metavar="DEG", required=required, help=text)
+
+
+def _write_options(command, keep):
+    add = command.add_argument
+    text = "the net: .obj, .ply, .off, .vtp, .glb, .dxf or .3dm"
+    add("-o", "--output", required=True, metavar="FILE", help=text)
+    text = "the four families of curves too, in .obj (.vtp, .glb, .dxf, .3dm always have them)"
+    add("--curves", action="store_true", help=text)
+    add("--force", action="store_true", help="replace the file if it is there")
+    if keep:
+        text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
+        add("--tolerance", type=_tolerance, default=least, metavar="DEG", help=text)
+        add("--keep", action="store_true", help="write the best net even if it is off its angles")
+    _say_options(command)
+
+
+def _say_options(command):
+    command.add_argument("--json", action="store_true", help="one JSON object on stdout")
+    _quiet_option(command)
+
+
+def _quiet_option(command):
+    command.add_argument("--quiet", action="store_true", help="no progress bar and no table")
+
+
+def _measure_options(command):
+    command.add_argument("net", help="a quad mesh: .obj, .ply, .off or .vtp")
+    _angle_options(command, "; deviations are from it, or from the mean without it")
+    _say_options(command)
 
 
 def _measure(given):
-    V, Q, polygons, notes = paths.read_net(given.net, must_label=False)
-    notes += paths.turned(V, Q, given.theta, given.theta0)
-    found = report.report(V, Q, polygons, **_wanted(given))
-    _say(given, found, given.net, notes, labelled=mesh.is_labelled(Q))
+    V, Q, polygons, notes = _read_net(given, must_label=False)
+    from . import mesh
+
+    _say(given, _report(given, V, Q, polygons), given.net, notes, labelled=mesh.is_labelled(Q))
     return DONE
 
 
+def _cover_options(command):
+    from .examples import SURFACES
+
+    text = f"""a disk or a ring: a file .obj, .ply, .off, .stl, .vtp or .glb, or one of the
+        examples {", ".join(SURFACES)}"""
+    command.add_argument("surface", help=text)
+    _angle_options(command, "", required=True)
+    size = command.add_mutually_exclusive_group()
+    text = "about so many quads (%(default)s)"
+    size.add_argument("--quads", type=_whole, default=1500, metavar="N", help=text)
+    text = "or: the mean edge, in the unit of the surface's file"
+    size.add_argument("--size", type=_positive, help=text)
+    text = """of the u-lines, against the longest direction of the flattened surface, or
+        against the direction around its hole (0)"""
+    command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
+    _write_options(command, keep=True)
+
+
 def _cover(given):
-    paths.check_output(given.output, given.force, given.curves)
+    from . import io
+    from .examples import SURFACES
+
+    io.check_output(given.output, given.curves, given.force)
     if given.surface in SURFACES:
         (V, F), repaired = SURFACES[given.surface](), []
     else:
         V, F, repaired = io.surface(given.surface)
+    from . import design
+
     found = design.cover(
         V,
         F,
-        *np.radians([given.theta, given.theta0]),
+        given.theta,
+        given.theta0,
         count=given.quads,
         size=given.size,
-        direction=np.radians(given.direction),
-        tolerance=np.radians(given.tolerance),
+        direction=given.direction,
+        tolerance=given.tolerance,
         progress=_progress(given),
     )
-    notes = _repairs(given.surface, [*repaired, *found.report.repairs])
-    more = {"converged": found.report.converged, "message": found.report.message}
-    return _finish(given, found.V, found.Q, (), found.report, notes, **more)
+    about = found.report
+    notes = _repairs(given.surface, [*repaired, *about.repairs])
+    more = {"converged": about.converged, "message": about.message}
+    return _finish(given, found.V, found.Q, (), about, notes, more)
+
+
+def _web_options(command):
+    from .surfaces import PROFILES
+
+    add = command.add_argument
+    text = f"""the meridian: {", ".join(PROFILES)}, or a .csv file with a radius and a
+        height in each row"""
+    add("--profile", required=True, help=text)
+    _angle_options(command, "", required=True)
+    add("-m", type=_whole, required=True, help="quads around the axis")
+    add("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
+    text = """exact: straight-edged quads with these angles; smooth: points of the smooth web;
+        paper: the published algorithm (%(default)s)"""
+    ways = "exact", "smooth", "paper"
+    add("--method", choices=ways, default="exact", help=text)
+    _write_options(command, keep=False)
 
 
 def _web(given):
-    paths.check_output(given.output, given.force, given.curves)
-    known = PROFILES.get(given.profile)
-    profile = known() if known else paths.profile(_profile_file(given.profile))
-    angles = np.radians([given.theta, given.theta0])
-    net = loxodrome.web(profile, *angles, given.m, given.n, given.method)
-    io.write(
-        given.output,
-        net.V,
-        net.Q,
-        paths.curves(given.output, net.Q, given.curves),
-        force=given.force,
-    )
-    found = report.report(net.V, net.Q, **_wanted(given))
-    rows = {"rows": net.rows, "quads_around": given.m, "message": net.message}
-    _say(given, found, given.output, [], **rows)
-    return DONE
+    from . import io
+
+    io.check_output(given.output, given.curves, given.force)
+    profile = _profile(given.profile)
+    from . import loxodrome
+
+    net = loxodrome.web(profile, given.theta, given.theta0, given.m, given.n, given.method)
+    about = _report(given, net.V, net.Q)
+    more = {"rows": net.rows, "quads_around": given.m, "message": net.message}
+    return _finish(given, net.V, net.Q, (), about, [], more)
 
 
-def _profile_file(name):
+def _profile(name):
+    """The profile of this name, or through the rows of a file, each a radius and a height."""
+    from . import surfaces
+
+    if name in surfaces.PROFILES:
+        return surfaces.PROFILES[name]()
     if not Path(name).is_file():
-        known = ", ".join(PROFILES)
+        known = ", ".join(surfaces.PROFILES)
         raise ValueError(f"--profile {name}: neither {known} nor a file that is there")
-    return name
+    rows = []
+    lines = Path(name).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    for k, line in enumerate(lines, 1):
+        try:
+            radius, height = (float(x) for x in re.split(r"[,;\s]+", line.strip(" \t,;")))
+            rows.append((radius, height))
+        except ValueError:
+            if line.strip() and (rows or re.search(r"\d", line)):
+                what = f"a radius and a height are wanted, not {line.strip()[:40]!r}"
+                raise ValueError(f"{name}, line {k}: {what}") from None
+    if len(rows) < 2:
+        raise ValueError(f"{name}: at least two rows with a radius and a height are wanted")
+    try:
+        return surfaces.spline_profile(rows)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def _optimize_options(command):
+    add = command.add_argument
+    add("net", help="a quad mesh: .obj, .ply, .off or .vtp")
+    _angle_options(command, "; of --theta, --theta0, --lam, --mu at most two")
+    add("--lam", type=_positive, help="ratio of the diagonals, |d2| / |d1|")
+    add("--mu", type=_positive, help="ratio of the medial lines, |m13| / |m24|")
+    add("--reference", metavar="FILE", help="a surface to stay near")
+    add("--on-surface", action="store_true", help="keep every vertex on the reference")
+    add("--fixed", choices=("boundary",), help="vertices that stay")
+    text = """the way to the angles: from the mean ones, through right angles, or at once
+        (%(default)s)"""
+    ways = "mean", "medials", "diagonals", "squares", "jump"
+    add("--via", choices=ways, default="mean", help=text)
+    _write_options(command, keep=True)
 
 
 def _optimize(given):
-    paths.check_output(given.output, given.force, given.curves)
-    V, Q, polygons, notes = paths.read_net(given.net)
-    notes += paths.turned(V, Q, given.theta, given.theta0)
+    from . import io, mesh
+
+    io.check_output(given.output, given.curves, given.force)
+    V, Q, polygons, notes = _read_net(given)
     near = None
     if given.reference is not None:
-        surface = io.surface(given.reference)
-        near = reference.mesh(surface.V, surface.F)
-        notes += _repairs(given.reference, surface.repaired)
-    rims = {frozenset(loop.tolist()) for loop in boundary_loops(Q)}
+        W, F, repaired = io.surface(given.reference)
+        notes += _repairs(given.reference, repaired)
+        from . import reference
+
+        near = reference.mesh(W, F)
+    from . import solver
+
+    rims = {frozenset(loop.tolist()) for loop in mesh.boundary_loops(Q)}
     found = solver.optimize(
         V,
         Q,
-        *(None if x is None else np.radians(x) for x in (given.theta, given.theta0)),
+        given.theta,
+        given.theta0,
         given.lam,
         given.mu,
         reference=near,
         on_surface=given.on_surface,
         fixed=given.fixed,
-        polygons=[p for p in polygons if frozenset(np.asarray(p).tolist()) in rims],
+        polygons=[p for p in polygons if frozenset(p.tolist()) in rims],
         via=given.via,
-        tolerance=np.radians(given.tolerance),
+        tolerance=given.tolerance,
         progress=_progress(given),
     )
-    more = {
-        "converged": found.converged,
-        "message": found.message,
-        "steps": len(found.history) - 1,
-        "lam": found.lam,
-        "mu": found.mu,
-        "seconds": found.seconds,
-    }
-    about = report.report(found.V, Q, polygons, **_wanted(given))
-    return _finish(given, found.V, Q, polygons, about, notes, **more)
+    names = "converged", "message", "lam", "mu", "seconds"
+    more = {name: getattr(found, name) for name in names} | {"steps": len(found.history) - 1}
+    about = _report(given, found.V, Q, polygons)
+    return _finish(given, found.V, Q, polygons, about, notes, more)
+
+
+def _explore_options(command):
+    add = command.add_argument
+    add("surface", nargs="?", help="a surface to cover, as for `inet cover` (without: examples)")
+    add("--port", type=_port, metavar="N", help="of the address (8765, or the next that is free)")
+    add("--open", action="store_true", help="open the page in a browser")
 
 
 def _explore(given):
+    from . import io
+
     surface = given.surface and io.surface(given.surface)
     if surface:
-        clean.clean(surface.V, surface.F)  # refuses what cannot be covered
+        from . import repair
+
+        repair.clean(surface.V, surface.F)  # refuses what cannot be covered
     from .explorer import notebook
 
     try:
@@ -216,11 +376,17 @@ def _ready(browser, address):
         webbrowser.open(address)
 
 
+def _figures_options(command):
+    text = "beginnings of notebook names, or figures; none: all"
+    command.add_argument("names", nargs="*", help=text)
+    _quiet_option(command)
+
+
 def _figures(given):
     runner, folder = ROOT / "tools" / "redraw.py", ROOT / "notebooks"
     if not (runner.is_file() and folder.is_dir()):
         raise ValueError("figures: the notebooks are not here, run this in a clone of the project")
-    names = [stem for name in given.names for stem in _notebooks(folder, name)]
+    names = [stem for name in given.names for stem in notebooks(folder, name)]
     sys.path.insert(0, str(runner.parent))
     redraw = importlib.import_module("redraw")
     if not _progress(given):
@@ -229,45 +395,83 @@ def _figures(given):
         return redraw.main(list(dict.fromkeys(names)))
 
 
-def _notebooks(folder, name):
-    """The notebooks whose names begin so, or that draw the figure of this name."""
+def notebooks(folder: Path, name: str) -> list[str]:
+    """The notebooks whose names begin so, or that draw the figure of this name (their tags)."""
     found = []
     for path in sorted(folder.glob("*.ipynb")):
-        if path.stem.startswith(name) or name in _tags(path):
+        cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
+        tags = {tag for cell in cells for tag in cell["metadata"].get("tags", [])}
+        if path.stem.startswith(name) or name in tags:
             found.append(path.stem)
     if not found:
         raise ValueError(f"figures: no notebook begins with {name!r}, and none draws it")
     return found
 
 
-def _tags(path):
-    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
-    return {tag for cell in cells for tag in cell["metadata"].get("tags", [])}
+def _read_net(given, must_label=True):
+    """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
+    from . import io, mesh
+
+    V, Q, polygons = io.net(given.net)
+    notes = []
+    try:
+        labelled = mesh.label(Q)
+        if (labelled != Q).any():
+            notes = ["the faces did not agree on u and v: all are labelled like the first one now"]
+    except ValueError as reason:
+        if must_label:
+            raise
+        labelled, notes = Q, [f"the numbers are those of the labels in the file: {reason}"]
+    return V, labelled, polygons, notes + _turned(V, labelled, given.theta, given.theta0)
 
 
-# --- after the work ------------------------------------------------------------
+def _turned(V, Q, theta, theta0):
+    """A note, or none, that the angles would fit much better with u and v exchanged."""
+    if theta is None or theta0 is None:
+        return []
+    from . import measure
+
+    a, b = (float(x.mean()) for x in measure.angles(V, Q))
+    off = max(abs(a - theta), abs(b - theta0))
+    a, b = math.pi - a, math.pi - b
+    if off < 2 * max(abs(a - theta), abs(b - theta0)) + math.radians(1):
+        return []
+    other = f"{math.degrees(a):.6g} and {math.degrees(b):.6g}"
+    return [f"u and v may be exchanged in the file: with the other labels its angles are {other}"]
 
 
 def _repairs(path, sentences):
     return [f"{path}: {sentence}" for sentence in dict.fromkeys(sentences)]
 
 
-def _finish(given, V, Q, polygons, about, notes, **more):
+def _report(given, V, Q, polygons=()):
+    from .design import report
+
+    wanted = {name: getattr(given, name, None) for name in report.NAMES}
+    return report.report(V, Q, polygons, **wanted)
+
+
+def _finish(given, V, Q, polygons, about, notes, more):
     """Write the net if it is good or to be kept, and say what there is to say: exit code."""
-    good = more["converged"]
+    from . import io
+
+    good = more.get("converged", True)
     written = good or given.keep
     if written:
-        lines = paths.curves(given.output, Q, given.curves)
-        io.write(given.output, V, Q, lines, polygons, force=given.force)
+        suffix = Path(given.output).suffix.lower()
+        curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
+        io.write(given.output, V, Q, curves, polygons, given.force)
     _say(given, about, given.output if written else None, notes, **more)
-    if not good:
-        what = "this net was written" if written else "nothing was written, --keep does it"
-        raise Off(f"{more['message']}; {what}")
-    return DONE
+    if good:
+        return DONE
+    what = "this net was written" if written else "nothing was written, --keep does it"
+    return _tell(f"{more['message']}; {what}", NOT_FOUND)
 
 
 def _say(given, about, file, notes, **more):
     """The `Report`, the file and what else there is, in words or as JSON."""
+    from .design import report
+
     known = {"file": file, **report.numbers(about), **more, "notes": notes}
     if given.json:
         print(json.dumps(known, indent=2, allow_nan=False))
@@ -280,13 +484,15 @@ def _say(given, about, file, notes, **more):
             print("note:", note)
 
 
-def _wanted(given):
-    degrees = {name: getattr(given, name, None) for name in report.NAMES}
-    return {
-        name: np.radians(x) if x is not None and name.startswith("theta") else x
-        for name, x in degrees.items()
-    }
-
-
 def _progress(given):
     return sys.stderr.isatty() and not given.quiet
+
+
+COMMANDS = {
+    "measure": (_measure, _measure_options),
+    "cover": (_cover, _cover_options),
+    "web": (_web, _web_options),
+    "optimize": (_optimize, _optimize_options),
+    "explore": (_explore, _explore_options),
+    "figures": (_figures, _figures_options),
+}

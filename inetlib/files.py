@@ -1,13 +1,13 @@
-"""Files that appear whole or not at all, and nothing left beside them.
+"""Files that appear whole or not at all: written beside their place as `.new-PID-...`, renamed.
 
-A file is written beside its place, under a name `.new-PID-...`, and renamed when complete.
-What a process that was killed has left is removed by the next that writes into the folder.
-Nothing slow is imported: `start` needs this module before all others.
+What a killed process has left is removed by the next that writes into the folder.  Nothing
+slow is imported: `start` needs this module before all others.
 """
 
 import os
 import re
 import shutil
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -16,11 +16,8 @@ WRITTEN = []  # the files that this process has put in their places
 
 
 @contextmanager
-def replacing(path):
-    """A name beside `path` to write to, renamed onto it when the block ends well, else removed.
-
-    It ends like `path`, as writers look at the suffix.
-    """
+def replacing(path: str | Path) -> Iterator[Path]:
+    """A name like `path` to write to, renamed onto it when the block ends well, else removed."""
     path = Path(path)
     with _temporary(path.parent, path.suffix.lower()) as new:
         yield new
@@ -29,7 +26,7 @@ def replacing(path):
 
 
 @contextmanager
-def scratch(folder):
+def scratch(folder: str | Path) -> Iterator[Path]:
     """A new, empty folder in `folder`, removed at the end of the block."""
     with _temporary(Path(folder)) as new:
         new.mkdir()
@@ -48,13 +45,13 @@ def _temporary(folder, suffix=""):
         LIVE.discard(new)
 
 
-def clear():
+def clear() -> None:
     """Remove the temporary files and folders of this process: it is about to end."""
     for path in list(LIVE):
         _remove(path)
 
 
-def sweep(folder):
+def sweep(folder: str | Path) -> None:
     """Remove what processes that are gone have left in a folder, which need not be there."""
     folder, live = Path(folder), {path.name for path in LIVE}
     with suppress(OSError):
@@ -68,8 +65,7 @@ def _remove(path):
     with suppress(OSError):  # on Windows a file that is open stays, for the next sweep
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)
+        path.unlink(missing_ok=True)
 
 
 def _gone(pid):
@@ -85,8 +81,6 @@ def _gone(pid):
         return not handle
     try:
         os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    except OSError:  # somebody else's
-        pass
+    except OSError as error:
+        return isinstance(error, ProcessLookupError)  # others: the process is somebody else's
     return False

@@ -2,81 +2,123 @@
 
 A web has m quads around the axis.  Ring j lies at the meridian parameter t[j] and is turned by
 turn[j]; its vertices are (angle, parameter) = (i delta + turn[j], t[j]) with delta = 2 pi / m.
-One strip of quads, turned m times, is the whole net.  `rings` finds the next ring.
-
-Paper: Sec. 5.3, Alg. 1, App. A.3.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, root
 
-from . import mesh, surfaces, ties
+from . import mesh, ties
 from .mesh import Families
-from .parallelogram import check_angle, check_positive, from_rho, ratios
+from .parallelogram import check_angle, check_positive, check_whole, from_rho, ratios
+from .surfaces import Profile, check_profile, mercator, revolve, torus_profile
 
+ENOUGH = "as many as asked for"
 FITS = 1e-12  # a last row that is too high by this part of it still fits: the rest is rounding
+AROUND = "d1", "u", "d2", "v"  # the four directions, counter-clockwise within half a turn
 
 
-class NoRow(ValueError):
-    """No further row of quads fits; the text says why.
+class Net(NamedTuple):
+    """A web: vertices, quads, the four families of curves, and how far it got.
 
-    Paper: Alg. 1.
+    V        (m (rows + 1), 3), vertex i (rows + 1) + j is the i-th of ring j
+    Q        (m rows, 4), closed around the axis, labelled as in `mesh`
+    families point arrays (k, 3): u parallels (closed), v, d1 and d2 loxodromes
+    rows, t  number of rows of quads; the meridian parameters of the rings (rows + 1,)
+    message  how many rows there are, and why no more
+    theta, theta0  the angles the net was made for, radians
     """
 
+    V: np.ndarray
+    Q: np.ndarray
+    families: Families
+    rows: int
+    t: np.ndarray
+    message: str
+    theta: float
+    theta0: float
 
-def march(profile, following, n):
-    """(t, turn, why): rings from profile.start up, n rows or as many as fit (n = None).
 
-    following(t) returns the next parameter and the turn towards it, or raises NoRow; NoRow
-    passes when not even one row fits.  t, turn: arrays; why: the reason to stop, in words.
+def loxodrome(profile: Profile, theta0: float, angle: float = 0, samples: int = 201) -> np.ndarray:
+    """Points (samples, 3) of the loxodrome that meets every parallel at theta0.
 
-    Paper: Alg. 1.
+    From profile.start at the given angle around the axis (radians) to profile.stop: alpha =
+    angle + cot theta0 * w, evenly spaced in the Mercator coordinate w = int ds / radius.
+
+    Paper: Eq. (15).
     """
-    t, turn, why = [profile.start], [0.0], "as many as asked for"
-    while n is None or len(t) <= n:
-        if profile.stop - t[-1] < FITS * (profile.stop - profile.start):
-            why = meridian_ends(profile)
-            break
-        try:
-            after, by = following(t[-1])
-        except NoRow as reason:
-            if len(t) == 1:
-                raise
-            why = str(reason)
-            break
-        t.append(after)
-        turn.append(turn[-1] + by)
-    return np.array(t), np.array(turn), why
+    theta0 = _angle("theta0", theta0)
+    if not np.isfinite(angle):
+        raise ValueError(f"angle = {angle}: a finite number is wanted")
+    w_of_t, t_of_w = mercator(profile)
+    w = np.linspace(0, w_of_t(profile.stop), check_whole("samples", samples, 2))
+    return revolve(profile, angle + w / np.tan(theta0), t_of_w(w))
 
 
-def meridian_ends(profile):
-    """The words for a row that does not fit below profile.stop.
+def web(
+    profile: Profile,
+    theta: float,
+    theta0: float,
+    m: int,
+    n: int | None = None,
+    method: str = "exact",
+    equation: str = "lam",
+) -> Net:
+    """A web of (theta, theta0)-quads on a surface of revolution, as `Net`.
 
-    Paper: Alg. 1.
+    theta, theta0: radians in (0, pi); m >= 3 quads around the axis; n rows from profile.start
+    upwards, or as many as fit; `message` says when they are fewer.  ValueError when not even one
+    fits.
+
+    method "exact"   straight-edged quads with the angles asked for, to round-off
+           "smooth"  points of the smooth web, in closed form; angles off by O(1 / m^2)
+           "paper"   the published algorithm, on the smooth loxodromes, with its own equation
+                     for the next parallel, equation = "lam"; or the better "mu"
+
+    Paper: Alg. 1, Eq. (16), App. A.3, B4, B5.
     """
-    return f"a further one does not fit: the meridian ends at t = {profile.stop:.6g}"
+    check_profile(profile)
+    theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
+    m = check_whole("m", m, 3)
+    n = None if n is None else check_whole("n", n)
+    _check_size(profile, theta, theta0, m, n)
+    if method == "smooth":
+        t, turn, why = _smooth_rings(profile, theta, theta0, m, n)
+    elif method == "exact":
+        t, turn, why = _march(profile, n, *_exact_ring(profile, theta, theta0, m)[:2])
+    elif method == "paper":
+        _check_not_vacuous(theta, theta0, equation)
+        t, turn, why = _march(profile, n, *_paper_ring(profile, theta, theta0, m, equation)[:2])
+    else:
+        raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
+    if len(t) == 1:
+        raise ValueError(f"not one row of {m} quads: {why} (try a larger m)")
+    asked = f" of {n}" if n is not None and len(t) <= n else ""
+    rows, up = len(t) - 1, np.arange(len(t))
+    V = _points(profile, m, t, turn)
+    index = np.arange(len(V)).reshape(m, -1)
+    slanted = (np.arange(m)[:, None] + up) % m
+    curves = (np.vstack([index, index[:1]]).T, index, index[slanted, rows - up], index[slanted, up])
+    families = Families(*([V[line] for line in lines] for lines in curves))
+    message = f"{rows}{asked} rows of {m} quads: {why}"
+    return Net(V, _quads(index[:, :-1], index[:, 1:]), families, rows, t, message, theta, theta0)
 
 
-def smooth_rings(profile, theta, theta0, m, n):
-    """(t, turn, why) as from `march`, by equal steps of the Mercator coordinate: closed form."""
-    w_of_t, t_of_w = surfaces.mercator(profile)
-    step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
-    fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
-    if fit < 1:
-        raise NoRow(meridian_ends(profile))
-    rows = fit if n is None else min(n, fit)
-    w = step * np.arange(rows + 1)
-    why = "as many as asked for" if rows == n else meridian_ends(profile)
-    return t_of_w(w), w / np.tan(theta0), why
+def _points(profile, m, t, turn):
+    around = 2 * np.pi / m * np.arange(m)[:, None]
+    return revolve(profile, around + turn, t).reshape(-1, 3)
 
 
-def check_size(profile, theta, theta0, m, n):
-    """ValueError for webs of more than ten million quads, before memory and time run out.
+def _quads(low, high):
+    """Quads between vertices (m, rows) and those above them, closed around the axis."""
+    corners = high, low, np.roll(low, -1, axis=0), np.roll(high, -1, axis=0)
+    return np.stack(corners, axis=-1).reshape(-1, 4)
 
-    Paper: Alg. 1.
-    """
+
+def _check_size(profile, theta, theta0, m, n):
+    """ValueError for webs of more than ten million quads, before memory and time run out."""
     t = np.linspace(profile.start, profile.stop, 257)
     radius, height = profile.radius(t) + 0 * t, profile.height(t) + 0 * t
     width = np.sum(np.hypot(np.diff(radius), np.diff(height)) / radius[1:])
@@ -85,7 +127,56 @@ def check_size(profile, theta, theta0, m, n):
         raise ValueError(f"about {rows:.0f} rows of {m} quads fit: choose a smaller n or m")
 
 
-# --- one quad: squared lengths from the turn and two points of the meridian ---------------
+def _ended(profile):
+    return f"a further one does not fit: the meridian ends at t = {profile.stop:.6g}"
+
+
+def _smooth_rings(profile, theta, theta0, m, n):
+    """(t, turns, why) as from `_march`, by equal steps of the Mercator coordinate."""
+    w_of_t, t_of_w = mercator(profile)
+    step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
+    fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
+    rows = fit if n is None else min(n, fit)
+    w = step * np.arange(rows + 1)
+    return t_of_w(w), w / np.tan(theta0), ENOUGH if rows == n else _ended(profile)
+
+
+def _march(profile, n, following, turn):
+    """(t, turns, why): rings from profile.start up, n rows or as many as fit (n = None).
+
+    following(t0): (t, None) of the next ring, or (None, why) when no row fits; turn(t0, t): how
+    much further it is turned; why: the reason to stop, in words.
+    """
+    t, turns, why = [profile.start], [0.0], None
+    while why is None and (n is None or len(t) <= n):
+        ended = profile.stop - t[-1] < FITS * (profile.stop - profile.start)
+        after, why = (None, _ended(profile)) if ended else following(t[-1])
+        if why is None:
+            turns.append(turns[-1] + float(turn(t[-1], after)))
+            t.append(after)
+    return np.array(t), np.array(turns), why or ENOUGH
+
+
+def residual(
+    profile: Profile,
+    theta: float,
+    theta0: float,
+    m: int,
+    t0: float,
+    t: np.ndarray,
+    equation: str = "exact",
+) -> np.ndarray:
+    """The equation whose root t is the next ring above the ring at t0, as a function of t.
+
+    equation "lam": log(|A-D| / (lam |B-C|)), "mu": log(|m13| / (mu |m24|)), both between points
+    of the smooth loxodromes; "exact": |m13|^2 - mu^2 |m24|^2 with the turn that makes the
+    medial lines meet at theta0.  Draw it to see the two roots of "lam".
+
+    Paper: Eq. (16), Alg. 1, App. A.3.
+    """
+    if equation == "exact":
+        return _exact_ring(profile, theta, theta0, m)[2](t0, t)
+    return _paper_ring(profile, theta, theta0, m, equation)[2](t0, t)
 
 
 def _squares(profile, m, t0, t, turn):
@@ -103,217 +194,148 @@ def _squares(profile, m, t0, t, turn):
     return chord(turn / 2 - half) + rise, chord(turn / 2 + half) + rise, m13, m24
 
 
-def exact_turn(profile, theta, theta0, m, t0, t):
-    """The turn from the ring t0 to the ring t for which the quad's medial lines meet at theta0.
+def _exact_ring(profile, theta, theta0, m):
+    """(following, turn, off) of straight-edged quads with these angles, for two rings t0 and t.
 
-    t: number or array; NaN where no turn does it (the radii differ too much).  Holds together
-    with |m13| = mu |m24|, see `residual`.
+    off is positive at t = t0: its first sign change is the shortest row.
     """
-    return _exact_turn(profile, _psi(theta, theta0, m), t0, t)
-
-
-def _psi(theta, theta0, m):
-    """Half the turn between two rings of the same radius."""
-    return np.arctan(np.cos(theta0) / ratios(theta, theta0)[1] * np.tan(np.pi / m))
-
-
-def _exact_turn(profile, psi, t0, t):
-    ratio = profile.radius(t) / profile.radius(t0)
-    sine = np.sin(psi) * (ratio + 1 / ratio) / 2
-    return psi + np.arcsin(np.where(np.abs(sine) <= 1, sine, np.nan))
-
-
-def residual(profile, theta, theta0, m, t0, t, equation="exact"):
-    """The equation whose root t is the next ring above the ring at t0, as a function of t.
-
-    equation "lam": log(|A-D| / (lam |B-C|)), "mu": log(|m13| / (mu |m24|)), both between points
-    of the smooth loxodromes; "exact": |m13|^2 - mu^2 |m24|^2 with the turn of `exact_turn`.
-    t: array of parameters above t0.  Draw it to see the two roots of "lam".
-
-    Paper: Eq. (16), Alg. 1, App. A.3.
-    """
-    if equation == "exact":
-        mu, psi = ratios(theta, theta0)[1], _psi(theta, theta0, m)
-        return _exact_residual(profile, mu, psi, m, t0, t)
-    _check_equation(equation)
-    w_of_t, _ = surfaces.mercator(profile)
-    return _paper_residual(profile, w_of_t, theta, theta0, m, t0, t, equation)
-
-
-def _exact_residual(profile, mu, psi, m, t0, t):
-    _, _, m13, m24 = _squares(profile, m, t0, t, _exact_turn(profile, psi, t0, t))
-    return m13 - mu**2 * m24
-
-
-def _paper_residual(profile, w_of_t, theta, theta0, m, t0, t, equation):
-    lam, mu = ratios(theta, theta0)
-    turn = (w_of_t(t) - w_of_t(t0)) / np.tan(theta0)
-    d1, d2, m13, m24 = _squares(profile, m, t0, t, turn)
-    if equation == "lam":
-        return np.log(d2 / d1) / 2 - np.log(lam)
-    return np.log(m13 / m24) / 2 - np.log(mu)
-
-
-def _check_equation(equation):
-    if equation not in ("lam", "mu"):
-        raise ValueError(f'equation = {equation!r}: "lam" or "mu" is wanted')
-
-
-# --- the next ring ------------------------------------------------------------------------
-
-
-def exact_ring(profile, theta, theta0, m):
-    """The step of the exact web: t0 -> (t, turn), at the first root of the equation "exact".
-
-    The residual is positive at t0 itself, so that the first sign change is the shortest row.
-    The step raises NoRow where there is none below profile.stop.
-
-    Paper: Alg. 1, App. A.3 (straight distances; beyond the paper: B5).
-    """
-    mu, psi = ratios(theta, theta0)[1], _psi(theta, theta0, m)
-    smooth, half = 2 * np.pi / m * np.sin(theta0) / mu, np.pi / m
+    mu, half = ratios(theta, theta0)[1], np.pi / m
+    psi = np.arctan(np.cos(theta0) / mu * np.tan(half))  # half the turn for equal radii
     little = (profile.stop - profile.start) * 1e-5
 
+    def turn(t0, t):  # for which the medial lines meet at theta0; NaN if none does
+        ratio = profile.radius(t) / profile.radius(t0)
+        sine = np.sin(psi) * (ratio + 1 / ratio) / 2
+        return psi + np.arcsin(np.where(np.abs(sine) <= 1, sine, np.nan))
+
+    def off(t0, t):
+        _, _, m13, m24 = _squares(profile, m, t0, t, turn(t0, t))
+        return m13 - mu**2 * m24
+
     def following(t0):
-        ends = np.array([t0, min(t0 + little, profile.stop)])
+        ends, radius = np.array([t0, min(t0 + little, profile.stop)]), profile.radius(t0)
         moved = np.hypot(*(np.ptp(f(ends)) for f in (profile.radius, profile.height)))
-        step = smooth * profile.radius(t0) * np.ptp(ends) / max(moved, 1e-300)
-
-        def gap(t):
-            return _exact_residual(profile, mu, psi, m, t0, t)
-
-        t = _first_root(gap, t0, step, profile.stop)
+        smooth = 2 * half * np.sin(theta0) / mu * radius * np.ptp(ends) / max(moved, 1e-300)
+        low, length, t = t0, 2 * smooth, None
+        while t is None and low < profile.stop:
+            high = min(low + length, profile.stop)
+            t = _first_root(partial(off, t0), low, high)
+            low, length = high, 2 * length
         if t is None:
-            if not gap(profile.stop) < FITS * (2 * profile.radius(t0) * np.sin(half)) ** 2:
-                raise NoRow(meridian_ends(profile))
-            t = profile.stop
+            fits = off(t0, profile.stop) < FITS * (2 * radius * np.sin(half)) ** 2
+            return (profile.stop, None) if fits else (None, _ended(profile))
         if np.isnan(t):
-            raise NoRow(f"a further one does not fit: no such quad stands on t = {t0:.6g}")
-        return t, float(_exact_turn(profile, psi, t0, t))
+            return None, f"a further one does not fit: no such quad stands on t = {t0:.6g}"
+        return t, None
 
-    return following
-
-
-def _first_root(function, low, step, stop):
-    """The first t in (low, stop] where the function, positive at low, vanishes; or None.
-
-    NaN when the function turns into NaN before.  Scanned in stretches that double in length,
-    2 * step at first.
-    """
-    length = 2 * step
-    while low < stop:
-        high = min(low + length, stop)
-        bracket = _first_bracket(function, low, high, 3)
-        if bracket is not None:
-            return bracket[1] if np.isnan(bracket[1]) else _root(function, *bracket)
-        low, length = high, 2 * length
-    return None
+    return following, turn, off
 
 
-def _first_bracket(function, low, high, depth):
-    """(a, b) around the first root, None without one, (a, nan) where the function ends."""
+def _first_root(function, low, high, depth=3):
+    """The first root in (low, high] of a function, positive at low; None, or NaN if it ends."""
     t = np.linspace(low, high, 33)
     value = function(t)
     out = np.flatnonzero(~(value > 0))
     first = out[0] if out.size else len(t)
     if first == 0:  # too thin for floating point
-        return low, np.nan
+        return np.nan
     inner = value[1:-1]
     dips = 1 + np.flatnonzero((inner < value[:-2]) & (inner <= value[2:]))
     for k in dips[dips < first] if depth else []:  # two roots may hide between two samples
-        if (bracket := _first_bracket(function, t[k - 1], t[k + 1], depth - 1)) is not None:
-            return bracket
+        if (found := _first_root(function, t[k - 1], t[k + 1], depth - 1)) is not None:
+            return found
     if first == len(t):
         return None
     if np.isnan(value[first]):
-        zoom = t[first - 1], t[first], depth - 1
-        return _first_bracket(function, *zoom) if depth else (low, np.nan)
-    return t[first - 1], t[first]
+        return _first_root(function, t[first - 1], t[first], depth - 1) if depth else np.nan
+    return _root(function, t[first - 1], t[first])
 
 
 def _root(function, low, high):
     return brentq(function, low, high, xtol=1e-15 * (high - low), rtol=4 * np.finfo(float).eps)
 
 
-def paper_ring(profile, theta, theta0, m, equation):
-    """The published step: t0 -> (t, turn), on smooth loxodromes, by the equation "lam" or "mu".
+def _paper_ring(profile, theta, theta0, m, equation):
+    """(following, turn, off) as published: A, B on the ring t0; C, D on their loxodromes.
 
-    A and B lie on the ring t0; C and D on the same loxodromes, at one parallel.  D is C turned
-    by 2 pi / m, so the chord |C-D| is 2 r sin(pi / m) on every parallel: the first printed
-    equation decides nothing (and names the arc 2 pi r / m instead).  Left is
-    |A-D| = lam |B-C|, "lam".  It is empty for theta0 = 90 degrees and has a double root for
-    theta = 90 degrees: ValueError; else it has two roots, and the step takes the one on the
-    smooth web's side of |m13| = |m24|, or raises NoRow.  "mu" is |m13| = mu |m24| instead.
-
-    Paper: Alg. 1, Eq. (16), App. A.3.
+    D is C turned by 2 pi / m, so the chord |C-D| is 2 r sin(pi / m) on every parallel: the
+    first printed equation decides nothing (and names the arc 2 pi r / m instead).  Left is
+    |A-D| = lam |B-C|, "lam", with two roots; the one on the smooth web's side of
+    |m13| = |m24| is taken.  "mu" is |m13| = mu |m24| instead.
     """
-    _check_equation(equation)
+    if equation not in ("lam", "mu"):
+        raise ValueError(f'equation = {equation!r}: "lam" or "mu" is wanted')
     lam, mu = ratios(theta, theta0)
-    if equation == "lam":
-        _check_not_vacuous(lam, mu)
-    w_of_t, t_of_w = surfaces.mercator(profile)
+    w_of_t, t_of_w = mercator(profile)
     end, unit = w_of_t(profile.stop), 2 * np.pi / m * np.sin(theta0)
-    if equation == "mu":
-        search = 1e-3 / mu, 4 / mu + 4
-    else:  # log(|A-D| / |B-C|) is largest or smallest near 1, the other root is near mu
+    # In units of the smooth row with |m13| = |m24|: the row wanted is 1 / mu, the other root of
+    # "lam" near mu, and |A-D| / |B-C| largest or smallest near 1.
+    search = 1e-3 / mu, 4 / mu + 4
+    if equation == "lam":
         search = (1e-3 / mu, 1) if mu > 1 else (1, 4 / mu + 4)
 
-    def following(t0):
-        def gap(t):
-            return _paper_residual(profile, w_of_t, theta, theta0, m, t0, t, equation)
+    def turn(t0, t):
+        return (w_of_t(t) - w_of_t(t0)) / np.tan(theta0)
 
-        # search is in units of the smooth row with |m13| = |m24|; the row wanted is 1 / mu
+    def off(t0, t):
+        d1, d2, m13, m24 = _squares(profile, m, t0, t, turn(t0, t))
+        if equation == "lam":
+            return np.log(d2 / d1) / 2 - np.log(lam)
+        return np.log(m13 / m24) / 2 - np.log(mu)
+
+    def following(t0):
         low, high = (w_of_t(t0) + x * unit for x in search)
         ended = high >= end * (1 - FITS)
         low, high = t_of_w(min(low, end)), profile.stop if ended else t_of_w(high)
-        if ended and abs(gap(high)) < FITS:
-            return high, float((end - w_of_t(t0)) / np.tan(theta0))
-        if not gap(low) * gap(high) < 0:
-            none = f'the equation "{equation}" has no root where the next row should be'
-            raise NoRow(meridian_ends(profile) if ended else none)
-        t = _root(gap, low, high)
-        return t, float((w_of_t(t) - w_of_t(t0)) / np.tan(theta0))
+        if ended and abs(off(t0, high)) < FITS:
+            return high, None
+        if off(t0, low) * off(t0, high) < 0:
+            return _root(partial(off, t0), low, high), None
+        none = f'the equation "{equation}" has no root where the next row should be'
+        return None, _ended(profile) if ended else none
 
-    return following
+    return following, turn, off
 
 
-def _check_not_vacuous(lam, mu):
+def _check_not_vacuous(theta, theta0, equation):
+    lam, mu = ratios(theta, theta0)
     use = 'use equation = "mu" or method = "exact"'
-    if abs(np.log(lam)) < 1e-9:
-        raise ValueError(
-            "theta0 = 90 degrees: lam = 1, and |A-D| = lam |B-C| holds on every parallel, so it "
-            f"finds none; {use}"
-        )
-    if abs(np.log(mu)) < 1e-9:
-        raise ValueError(
-            "theta = 90 degrees: |A-D| = lam |B-C| has a double root, where no sign changes and "
-            f"no solver is safe; {use}"
-        )
+    if equation == "lam" and abs(np.log(lam)) < 1e-9:
+        why = "theta0 = 90 degrees: lam = 1, and |A-D| = lam |B-C| holds on every parallel"
+        raise ValueError(f"{why}, so it finds none; {use}")
+    if equation == "lam" and abs(np.log(mu)) < 1e-9:
+        why = "theta = 90 degrees: |A-D| = lam |B-C| has a double root, where no sign changes"
+        raise ValueError(f"{why} and no solver is safe; {use}")
 
 
-# --- Webs of loxodromes and parallels on surfaces of revolution: smooth, as published, exact. ---
+def subnet(net: Net, first: str, second: str, mirror: bool = False) -> tuple:
+    """(V, Q): quads whose edges run along two of the four families of a web.
 
+    first, second: two of "u", "v", "d1", "d2"; the quads' u-edges follow `first`, their
+    v-edges `second`.  ("d1", "d2") takes every other vertex and so needs an even m.
+    mirror=True reflects the net in the meridian plane y = 0: theta stays and theta0 becomes
+    its supplement.  V keeps the vertices of the net, used or not.
 
-class Net(NamedTuple):
-    """A web: vertices, quads, the four families of curves, and how far it got.
-
-    V        (m (rows + 1), 3), vertex i (rows + 1) + j is the i-th of ring j
-    Q        (m rows, 4), closed around the axis, labelled as in `mesh`
-    families `mesh.Families` of point arrays (k, 3): u parallels (closed), v loxodromes,
-             d1 and d2 the diagonals, loxodromes too
-    rows, t  number of rows of quads; the meridian parameters of the rings (rows + 1,)
-    message  how many rows there are, and why no more
-    theta, theta0  the angles the net was made for, radians
+    Paper: Fig. 11.
     """
-
-    V: np.ndarray
-    Q: np.ndarray
-    families: Families
-    rows: int
-    t: np.ndarray
-    message: str
-    theta: float
-    theta0: float
+    if first == second or not {first, second} <= set(AROUND):
+        raise ValueError(f"{first!r}, {second!r}: two of u, v, d1, d2 are wanted")
+    backwards = AROUND.index(first) > AROUND.index(second)
+    if {first, second} == {"d1", "d2"}:
+        Q = np.roll(mesh.diagonal_meshes(net.Q)[0], backwards, axis=1)
+    else:
+        v1, v2, v3, v4 = net.Q.T
+        right, left, up, down = np.full((4, len(net.V) + 1), -1)  # the last one is for -1
+        right[v2], left[v3], up[v2], down[v1] = v3, v2, v1, v2
+        right[v1], left[v4], up[v3], down[v4] = v4, v1, v4, v3
+        ahead = {"u": right, "v": up, "d1": down[right], "d2": up[right]}
+        back = {"u": left, "v": down, "d1": up[left], "d2": down[left]}
+        v3, v1 = ahead[first][:-1], (back if backwards else ahead)[second][:-1]
+        Q = np.stack([v1, np.arange(len(net.V)), v3, ahead[first][v1]], axis=1)
+        Q = Q[(Q >= 0).all(axis=1)]
+    if not len(Q):
+        raise ValueError(f"{net.rows} rows of quads are too few for a quad along {first}, {second}")
+    return (net.V * [1, -1, 1], Q[:, ::-1]) if mirror else (net.V, Q)
 
 
 class Closing(NamedTuple):
@@ -326,174 +348,21 @@ class Closing(NamedTuple):
     theta0: float
 
 
-# --- one loxodrome ------------------------------------------------------------------------
-
-
-def loxodrome(profile, theta0, angle=0.0, samples=201):
-    """Points (samples, 3) of the loxodrome that meets every parallel at theta0.
-
-    It starts at profile.start and the given angle around the axis (radians) and ends at
-    profile.stop: alpha = angle + cot theta0 * w, with w = int ds / radius the Mercator
-    coordinate; the points are evenly spaced in w.  ValueError for angles outside (0, pi).
-
-    Paper: Eq. (15), Sec. 5.3.
-    """
-    theta0 = _scalar_angle("theta0", theta0)
-    if not np.isfinite(angle):
-        raise ValueError(f"angle = {angle}: a finite number is wanted")
-    w_of_t, t_of_w = surfaces.mercator(profile)
-    w = np.linspace(0, w_of_t(profile.stop), _whole("samples", samples, 2))
-    return surfaces.revolve(profile, angle + w / np.tan(theta0), t_of_w(w))
-
-
-# --- the web ------------------------------------------------------------------------------
-
-
-def web(profile, theta, theta0, m, n=None, method="exact", equation="lam"):
-    """A web of (theta, theta0)-quads on a surface of revolution, as `Net`.
-
-    profile: `surfaces.Profile`; theta, theta0: radians in (0, pi); m >= 3 quads around the
-    axis; n rows from profile.start upwards, or as many as fit (n = None).  Fewer rows than n
-    are built when no more fit: `message` says so.  ValueError when not even one fits.
-
-    method "exact"   straight-edged quads with the angles asked for, to round-off
-           "smooth"  points of the smooth web, in closed form; angles off by O(1 / m^2)
-           "paper"   the published algorithm, on the smooth loxodromes, with its own equation
-                     for the next parallel, equation = "lam"; or the better "mu"
-
-    Paper: Alg. 1, Eq. (16), App. A.3, Sec. 5.3 (beyond the paper: B4, B5).
-    """
-    surfaces.check_profile(profile)
-    theta, theta0 = _scalar_angle("theta", theta), _scalar_angle("theta0", theta0)
-    m = _whole("m", m, 3)
-    n = None if n is None else _whole("n", n, 1)
-    check_size(profile, theta, theta0, m, n)
-    try:
-        if method == "smooth":
-            t, turn, why = smooth_rings(profile, theta, theta0, m, n)
-        elif method == "exact":
-            t, turn, why = march(profile, exact_ring(profile, theta, theta0, m), n)
-        elif method == "paper":
-            t, turn, why = march(profile, paper_ring(profile, theta, theta0, m, equation), n)
-        else:
-            raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
-    except NoRow as reason:
-        raise NoRow(f"not one row of {m} quads: {reason} (try a larger m)") from None
-    asked = f" of {n}" if n is not None and len(t) <= n else ""
-    message = f"{len(t) - 1}{asked} rows of {m} quads: {why}"
-    return _net(profile, m, t, turn, message, theta, theta0)
-
-
-def _net(profile, m, t, turn, message, theta, theta0):
-    around = 2 * np.pi / m * np.arange(m)[:, None]
-    V = surfaces.revolve(profile, around + turn, t).reshape(-1, 3)
-    index = np.arange(len(V)).reshape(m, -1)
-    right = np.roll(index, -1, axis=0)
-    Q = np.stack([index[:, 1:], index[:, :-1], right[:, :-1], right[:, 1:]], axis=-1)
-    rows = len(t) - 1
-    up = np.arange(rows + 1)
-    slanted = (np.arange(m)[:, None] + up) % m
-    curves = (np.vstack([index, index[:1]]).T, index, index[slanted, rows - up], index[slanted, up])
-    families = Families(*([V[line] for line in lines] for lines in curves))
-    return Net(V, Q.reshape(-1, 4), families, rows, t, message, theta, theta0)
-
-
-# --- other nets of the same web -----------------------------------------------------------
-
-
-def subnet(net, first, second, mirror=False):
-    """(V, Q): quads whose edges run along two of the four families of a web.
-
-    first, second: two of "u", "v", "d1", "d2"; the quads' u-edges follow `first`, their
-    v-edges `second`.  ("d1", "d2") takes every other vertex and so needs an even m.
-    mirror=True reflects the net in the meridian plane y = 0: theta stays and theta0 becomes
-    its supplement.  V keeps the vertices of the net, used or not.
-
-    Paper: Sec. 5.3, Fig. 11 (other nets from the web).
-    """
-    for name in (first, second):
-        if name not in _STEPS or first == second:
-            raise ValueError(f"{first!r}, {second!r}: two of {', '.join(_STEPS)} are wanted")
-    (a, b), (c, d) = _STEPS[first], _STEPS[second]
-    sign = a * d - b * c
-    if abs(sign) == 2:
-        Q = mesh.diagonal_meshes(net.Q)[0]
-        Q = Q if sign > 0 else np.roll(Q, 1, axis=1)
-    else:
-        walk = _walker(net)
-        v2 = np.arange(len(net.V))
-        v3, v1 = walk(v2, a, b), walk(v2, sign * c, sign * d)
-        Q = np.stack([v1, v2, v3, walk(v1, a, b)], axis=1)
-        Q = Q[(Q >= 0).all(axis=1)]
-    if not len(Q):
-        raise ValueError(f"{net.rows} rows of quads are too few for a quad along {first}, {second}")
-    return (net.V * [1, -1, 1], Q[:, ::-1]) if mirror else (net.V, Q)
-
-
-_STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}
-
-
-def _walker(net):
-    """walk(vertices, i, j): the vertices i edges along u and j along v further on, or -1."""
-    v1, v2, v3, v4 = net.Q.T
-    edges = {"right": (v2, v3), "up": (v2, v1)}, {"right": (v1, v4), "up": (v3, v4)}
-    step = {}
-    for name, back in (("right", "left"), ("up", "down")):
-        step[name], step[back] = np.full((2, len(net.V) + 1), -1)  # the last one is for -1
-        for pair in edges:
-            one, two = pair[name]
-            step[name][one], step[back][two] = two, one
-
-    def walk(vertices, i, j):
-        for count, ahead, back in ((i, "right", "left"), (j, "up", "down")):
-            for _ in range(abs(count)):
-                vertices = step[ahead if count > 0 else back][vertices]
-        return vertices
-
-    return walk
-
-
-def mirror_angles(theta, theta0, first="v", second="v"):
-    """(theta, theta0) of the web that has two families of another one, one of them mirrored.
-
-    Its v-curves and d1-curves are the family `first` of the (theta, theta0)-web and the mirror
-    image of `second` in a meridian plane, in the order that makes them meet on parallels:
-    subnet(web(profile, *mirror_angles(theta, theta0), m), "v", "d1") are the rhombic quads
-    between the loxodromes and their mirror images.  first, second: "v", "d1" or "d2".
-
-    Paper: Sec. 5.3, Fig. 11 (reflections in the meridian planes).
-    """
-    theta, theta0 = _scalar_angle("theta", theta), _scalar_angle("theta0", theta0)
-    apart = ratios(theta, theta0)[1] / np.sin(theta0)
-    slope = {"v": 1 / np.tan(theta0)}  # of the angle over the Mercator coordinate
-    slope |= {"d1": slope["v"] - apart, "d2": slope["v"] + apart}
-    for name in (first, second):
-        if name not in slope:
-            raise ValueError(f"{name!r}: one of {', '.join(slope)} is wanted")
-    one, two = slope[first], -slope[second]
-    if abs(one - two) < 1e-9:
-        raise ValueError(f"{first} and the mirror image of {second} are the same curves")
-    shape = from_rho((max(one, two) + 1j) / abs(one - two))
-    return float(shape.theta), float(shape.theta0)
-
-
-# --- closed webs on the torus -------------------------------------------------------------
-
-
-def closings(major, minor, theta, theta0, limit=96, count=10):
+def closings(
+    major: float, minor: float, theta: float, theta0: float, limit: int = 96, count: int = 10
+) -> list[Closing]:
     """The closed torus webs nearest to (theta, theta0): a list of `Closing`, nearest first.
 
-    major > minor > 0: the radii; m and n go up to `limit`; at most `count` are listed, nearest
-    by the larger deviation of the two angles, of equals that with the smaller m.  The smooth
-    web with m quads around and n rows closes with a shift of k quads exactly when X_v / X_u =
-    (k + i m W / (2 pi)) / n, where W = 2 pi minor / sqrt(major^2 - minor^2) is the period of
-    the Mercator coordinate.
+    m and n go up to `limit`; at most `count` are listed, nearest by the larger deviation of
+    the two angles, of equals that with the smaller m.  The smooth web closes with a shift of k
+    quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where W = 2 pi minor /
+    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.
 
-    Paper: Sec. 5.3 (closed webs, beyond the paper: B4).
+    Paper: B4.
     """
     wide = _torus_width(major, minor)
-    theta, theta0 = _scalar_angle("theta", theta), _scalar_angle("theta0", theta0)
-    limit, count = _whole("limit", limit, 3), _whole("count", count, 1)
+    theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
+    limit, count = check_whole("limit", limit, 3), check_whole("count", count)
     rho = np.exp(1j * theta0) / ratios(theta, theta0)[1]
     m, n = np.mgrid[3 : limit + 1, 3 : limit + 1].reshape(2, -1)
     shift = ties.nearest_whole(n * rho.real)
@@ -506,59 +375,46 @@ def closings(major, minor, theta, theta0, limit=96, count=10):
 
 def _torus_width(major, minor):
     """W / (2 pi) of the torus; ValueError unless major > minor > 0."""
-    surfaces.torus_profile(major, minor)
+    torus_profile(major, minor)
     check_positive("major", major)
     return minor / np.sqrt((major - minor) * (major + minor))
 
 
-def torus_web(major, minor, m, n, shift):
+def torus_web(major: float, minor: float, m: int, n: int, shift: int) -> Net:
     """The exact closed web of a torus, as `Net` with m n vertices, numbered i n + j.
 
     n rows of m quads; going once around the tube every loxodrome ends `shift` quads further
     around the axis.  All quads have the same two angles, net.theta and net.theta0, near those
     of the smooth web (see `closings`).  ValueError when no closed web is found.
 
-    Paper: Sec. 5.3 (closed webs, beyond the paper: B4).
+    Paper: B4.
     """
     wide = _torus_width(major, minor)
-    m, n = _whole("m", m, 3), _whole("n", n, 3)
-    shift = _whole("shift", shift)
-    profile = surfaces.torus_profile(major, minor, -np.pi, 3 * np.pi)
+    m, n = check_whole("m", m, 3), check_whole("n", n, 3)
+    if shift % 1 != 0:
+        raise ValueError(f"shift = {shift}: a whole number is wanted")
+    shift = int(shift)
+    profile = torus_profile(major, minor, -np.pi, 3 * np.pi)
     smooth = from_rho((shift + 1j * m * wide) / n)
 
     def miss(angles):
-        t, turn, _ = march(profile, exact_ring(profile, *angles, m), n)
+        t, turn, _ = _march(profile, n, *_exact_ring(profile, *angles, m)[:2])
         if len(t) <= n:
-            raise NoRow(f"m = {m}, n = {n}, shift = {shift}: the rows do not fit on the torus")
+            raise ValueError(f"m = {m}, n = {n}, shift = {shift}: the rows do not fit on the torus")
         return t, turn, [t[-1] - np.pi, turn[-1] - 2 * np.pi / m * shift]
 
     found = root(lambda angles: miss(angles)[2], smooth[2:], tol=1e-15)
-    theta, theta0 = found.x
     t, turn, gap = miss(found.x)
     if not np.abs(gap).max() < 1e-12:
         raise ValueError("no closed web near the smooth one: take more quads")
+    V, index = _points(profile, m, t[:-1], turn[:-1]), np.arange(m * n).reshape(m, n)
+    Q = _quads(index, np.hstack([index[:, 1:], np.roll(index[:, :1], -shift, axis=0)]))
+    families = Families(*([V[line] for line in lines] for lines in mesh.polylines(Q)))
     message = f"{n} rows of {m} quads, closed with a shift of {shift}"
-    net = _net(profile, m, t[:-1], turn[:-1], message, theta, theta0)
-    index = np.arange(m * n).reshape(m, n)
-    top = np.hstack([index[:, 1:], np.roll(index[:, :1], -shift, axis=0)])
-    Q = np.stack([top, index, np.roll(index, -1, axis=0), np.roll(top, -1, axis=0)], axis=-1)
-    Q = Q.reshape(-1, 4)
-    families = Families(*([net.V[line] for line in lines] for lines in mesh.polylines(Q)))
-    return net._replace(Q=Q, families=families, rows=n, t=t)
+    return Net(V, Q, families, n, t, message, *found.x)
 
 
-# --- checks -------------------------------------------------------------------------------
-
-
-def _scalar_angle(name, value):
+def _angle(name, value):
     if np.ndim(value):
         raise ValueError(f"{name}: one angle is wanted, not an array")
     return float(check_angle(name, value))
-
-
-def _whole(name, value, least=None):
-    whole = np.ndim(value) == 0 and np.isfinite(value) and value == int(value)
-    if not whole or (least is not None and value < least):
-        kind = "a whole number" if least is None else f"a whole number from {least} upwards"
-        raise ValueError(f"{name} = {value}: {kind} is wanted")
-    return int(value)

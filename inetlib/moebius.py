@@ -2,15 +2,15 @@
 
 A point x is lifted to X = (x, (|x|^2 - 1)/2, (|x|^2 + 1)/2), a vector of length 0 in the
 Lorentz product <X, Y> = X0 Y0 + ... + X3 Y3 - X4 Y4; multiples of X mean the same point.
-Inversions, motions, scalings and all they generate are then the 5 x 5 matrices M that keep
-this product: M2 @ M1 does M1 first, `numpy.linalg.inv(M)` undoes M.  Squared coordinates
-enter: keep the net near the origin, and the radius of an inversion about as large as the
-distance of its centre, and 10 digits or more are right, there and back.
+Inversions, and all they generate, are then the 5 x 5 matrices M that keep this product:
+M2 @ M1 does M1 first, `numpy.linalg.inv(M)` undoes M.  Squared coordinates enter: keep the
+net near the origin and the radius of an inversion about as large as the distance of its
+centre, and 10 digits or more are right, there and back.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from . import ties
 from .parallelogram import check_positive
 from .surfaces import Surface
 
@@ -18,55 +18,31 @@ LORENTZ = np.diag([1.0, 1.0, 1.0, 1.0, -1.0])
 LORENTZ.setflags(write=False)
 
 
-# --- the matrices -------------------------------------------------------------------------
-
-
-def lift(V):
+def lift(V: np.ndarray) -> np.ndarray:
     """The points V (..., 3) as lifted vectors (..., 5), X4 - X3 = 1; ValueError for NaN, inf."""
     V = _points(V)
     square = np.sum(V * V, axis=-1, keepdims=True)
     return np.concatenate([V, (square - 1) / 2, (square + 1) / 2], axis=-1)
 
 
-def inversion(centre=(0, 0, 0), radius=1.0):
+def inversion(centre: ArrayLike = (0, 0, 0), radius: float = 1.0) -> np.ndarray:
     """The inversion x -> centre + radius^2 (x - centre) / |x - centre|^2 as a 5 x 5 matrix.
 
     centre: (3,), goes to infinity; radius > 0.  It is its own inverse and reverses the
     orientation.
+
+    >>> apply(inversion(radius=2), [0, 0, 1])
+    array([0., 0., 4.])
     """
-    centre, radius = _vector("centre", centre), check_positive("radius", radius)
+    centre, radius = np.asarray(centre, dtype=float), check_positive("radius", radius)
+    if centre.shape != (3,) or not np.isfinite(centre).all():
+        raise ValueError(f"centre = {centre}: three finite coordinates are wanted")
     k = centre @ centre - radius**2
     sphere = np.array([*centre, (k - 1) / 2, (k + 1) / 2])  # <sphere, sphere> = radius^2
     return np.eye(5) - 2 / radius**2 * np.outer(sphere, LORENTZ @ sphere)
 
 
-def similarity(rotation=None, scale=1.0, shift=(0, 0, 0)):
-    """The similarity x -> scale rotation x + shift as a 5 x 5 matrix.
-
-    rotation: orthogonal (3, 3), a reflection is welcome, default the identity; scale > 0;
-    shift: (3,).  ValueError when the matrix is not orthogonal within 1e-9.
-    """
-    scale, shift = check_positive("scale", scale), _vector("shift", shift)
-    R = np.eye(3) if rotation is None else np.asarray(rotation, dtype=float)
-    if R.shape != (3, 3) or not np.abs(R.T @ R - np.eye(3)).max() <= 1e-9:
-        raise ValueError("rotation must be an orthogonal 3 x 3 matrix")
-    a, b = (scale + 1 / scale) / 2, (scale - 1 / scale) / 2
-    M = np.eye(5)
-    M[:3, :3] = R
-    M[3:, 3:] = [[a, b], [b, a]]
-    return _translation(shift) @ M
-
-
-def _translation(shift):
-    half = shift @ shift / 2
-    M = np.eye(5)
-    M[:3, 3:] = np.stack([-shift, shift], axis=1)
-    M[3:, :3] = shift
-    M[3:, 3:] += [[-half, half], [-half, half]]
-    return M
-
-
-def check(M):
+def check(M: np.ndarray) -> np.ndarray:
     """M as a float array, or a ValueError when it is not a 5 x 5 Lorentz matrix.
 
     M^T J M = J with J = diag(1, 1, 1, 1, -1) must hold to 1e-9 of the largest entry squared.
@@ -78,19 +54,15 @@ def check(M):
     if off > 1e-9 * max(1, np.abs(M).max() ** 2):
         raise ValueError(
             f"M is no Lorentz matrix (M^T J M differs from J by {off:.3g}): "
-            "multiply matrices of inversion and similarity"
+            "multiply matrices of inversion"
         )
     return M
 
 
-# --- what they do -------------------------------------------------------------------------
-
-
-def apply(M, V):
+def apply(M: np.ndarray, V: np.ndarray) -> np.ndarray:
     """The images (..., 3) of the points V (..., 3) under the 5 x 5 Lorentz matrix M.
 
-    ValueError for a matrix that is not Lorentz and for a vertex that goes to infinity; both
-    messages say which.
+    ValueError for a matrix that is not Lorentz, and for a vertex that goes to infinity.
 
     Paper: Fig. 9.
     """
@@ -98,38 +70,19 @@ def apply(M, V):
     Y = X @ M.T
     weight = Y[..., 4] - Y[..., 3]
     infinite = np.abs(weight) <= 1e-12 * (np.abs(X) @ np.abs(M[4] - M[3]))
-    _refuse(infinite, "vertex{} goes to infinity: move the pole off the net, see away_from")
+    _refuse(infinite, "vertex{} goes to infinity: move the pole off the net")
     return Y[..., :3] / weight[..., None]
 
 
-def pole(M):
+def pole(M: np.ndarray) -> np.ndarray | None:
     """The point (3,) that M sends to infinity; None when M is a similarity."""
-    M = check(M)
     # M^-1 = J M^T J takes the point at infinity, (0, 0, 0, 1, 1), back to the pole.
-    X = LORENTZ @ M.T @ np.array([0, 0, 0, 1.0, -1.0])
+    X = LORENTZ @ check(M).T @ np.array([0, 0, 0, 1.0, -1.0])
     weight = X[4] - X[3]
     return None if abs(weight) <= 1e-12 * np.abs(X).max() else X[:3] / weight
 
 
-def away_from(V, clearance=0.2):
-    """A centre (3,) for an inversion that stays clear of the net with the vertices V (n, 3).
-
-    No vertex is nearer to it than clearance times the diagonal of the bounding box.  The
-    search leaves the mean of V along the axes z, y and x in small steps.
-    """
-    V, clearance = _points(V).reshape(-1, 3), check_positive("clearance", clearance)
-    diagonal = np.linalg.norm(np.ptp(V, axis=0))
-    if len(V) < 2 or not diagonal > 0:
-        raise ValueError("V needs at least two different points")
-    middle = V.mean(axis=0)
-    axes = np.eye(3)[::-1]
-    steps = np.arange(1, 12 + 10 * clearance) / 10  # the last step is far enough for any net
-    far = (middle + t * diagonal * axis for t in steps for axis in (*axes, *-axes))
-    away = clearance * diagonal * (1 + ties.TIE)  # a distance that ties is too small
-    return next(c for c in far if np.linalg.norm(V - c, axis=1).min() >= away)
-
-
-def image(M, surface):
+def image(M: np.ndarray, surface: Surface) -> Surface:
     """The image of a whole `surfaces.Surface` under M, again a Surface; numbers only.
 
     An isothermal parametrisation stays isothermal.  Points that go to infinity are an
@@ -145,18 +98,14 @@ def image(M, surface):
     return Surface(f"Moebius image of the {surface.name}", coordinates)
 
 
-# --- stereographic projection -------------------------------------------------------------
-
-
-def stereographic(V):
+def stereographic(V: np.ndarray) -> np.ndarray:
     """The points V (..., 3) of the unit sphere, seen from (0, 0, 1) in the plane z = 0: complex.
 
     ValueError for a vertex off the sphere by more than 1e-9 and for the north pole itself.
 
     Paper: Fig. 10.
     """
-    V = _points(V)
-    x, y, z = np.moveaxis(V, -1, 0)
+    x, y, z = np.moveaxis(_points(V), -1, 0)
     off = np.abs(np.sqrt(x * x + y * y + z * z) - 1) > 1e-9
     _refuse(off, "vertex{} does not lie on the unit sphere")
     square = x * x + y * y
@@ -166,7 +115,7 @@ def stereographic(V):
     return (x + 1j * y) / height
 
 
-def sphere_points(z):
+def sphere_points(z: np.ndarray) -> np.ndarray:
     """The points (..., 3) of the unit sphere over the complex numbers z: `stereographic` undone.
 
     Paper: Fig. 10.
@@ -177,17 +126,6 @@ def sphere_points(z):
     return np.stack([2 * z.real, 2 * z.imag, square - 1], axis=-1) / (square + 1)[..., None]
 
 
-# --- checking arguments -------------------------------------------------------------------
-
-
-def _refuse(bad, words):
-    """ValueError with the words and the index of the first True in `bad`, if there is one."""
-    if np.any(bad):
-        index = [int(k) for k in np.unravel_index(np.argmax(bad), np.shape(bad))]
-        where = "" if not index else f" {index[0]}" if len(index) == 1 else f" {tuple(index)}"
-        raise ValueError(words.format(where))
-
-
 def _points(V):
     V = np.asarray(V, dtype=float)
     if V.ndim < 1 or V.shape[-1] != 3:
@@ -196,8 +134,9 @@ def _points(V):
     return V
 
 
-def _vector(name, value):
-    value = np.asarray(value, dtype=float)
-    if value.shape != (3,) or not np.isfinite(value).all():
-        raise ValueError(f"{name} = {value}: three finite coordinates are wanted")
-    return value
+def _refuse(bad, words):
+    """ValueError with the words and the index of the first True in `bad`, if there is one."""
+    if np.any(bad):
+        index = [int(k) for k in np.unravel_index(np.argmax(bad), np.shape(bad))]
+        where = "" if not index else f" {index[0]}" if len(index) == 1 else f" {tuple(index)}"
+        raise ValueError(words.format(where))

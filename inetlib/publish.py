@@ -14,6 +14,7 @@ from typing import NamedTuple
 import matplotlib.pyplot as plt
 import numpy as np
 import PIL.Image
+from matplotlib.figure import Figure
 
 from . import files, measure, same
 
@@ -24,7 +25,7 @@ class Drawing(NamedTuple):
     """A finished figure and what stands behind it."""
 
     name: str  # of its files
-    figure: object
+    figure: Figure
     function: str  # that drew it, as a dotted name
     parameters: dict  # {name: number}, what the function was called with
     data: dict  # {name: array}, the geometry drawn

@@ -1,213 +1,274 @@
-"""Making a triangle surface out of a mesh from a file, and saying what had to be done."""
+"""The one place where a surface is checked and repaired; each step returns what it did."""
 
-import igl
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from . import mesh, ties
-from .mesh import pairs, two_colour
 
-FLAT = 1e-12  # of the bounding box: an area this small is none
-NEAR = 1e-6  # of the bounding box: vertices closer than this are meant to be one
+FLAT = 1e-12  # of the square of the longest side: an area this small is none
+NEAR = 1e-6  # of the bounding box: vertices of a file closer than this are meant to be one
+SAME = 1e-12  # of the bounding box: vertices closer than this are at one place
 
 
-def clean(V, F, merge=True):
-    """Triangles that form an oriented manifold: (V (n, 3), T (t, 3), sentences on the repairs).
+class Clean(NamedTuple):
+    """A surface that can be covered: V (n, 3), triangles F (f, 3), oriented, and every vertex used.
 
-    V: (n, 3); F: (f, k), or a list of faces of any sizes.  Polygons are cut into triangles;
-    with `merge`, vertices at one place become one where the surface stays a manifold;
-    collapsed and double triangles go; triangles are turned round where neighbours disagree
-    (the more frequent side of each piece wins); unused vertices go.  ValueError for edges of
-    more than two triangles, vertices where two fans meet, one-sided surfaces, triangles
-    without area, and when nothing is left.  Vertex numbers count from 0.
+    loops: the boundary loops, one for a disk, two for a ring; repairs: what was done, sentences.
     """
-    T, said = triangulate(V, F), []
-    if many := sum(len(face) > 3 for face in F):
-        said.append(_count(many, "face with more than three corners", "cut into triangles"))
-    T, dropped = _extended(T)
-    dropped += sum(len(_once(face)) < 3 for face in F)
-    lost = len(T) == 0
-    for tolerance in (NEAR, 0.0, None) if merge and not lost else (None,):
+
+    V: np.ndarray
+    F: np.ndarray
+    loops: list
+    repairs: list
+
+
+def clean(V: np.ndarray, F: np.ndarray) -> Clean:
+    """The triangles (f, 3) or quads (f, 4) F with vertices V (n, 3) as a `Clean` surface.
+
+    Vertices at one place become one only where nothing else helps.  Triangles of a ring are
+    halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
+    for what no step can repair, and for all but disks and rings.
+    """
+    V, T = mesh.triangles(V, F)
+    try:
+        W, G, said = _oriented(V, T)
+        loops = topology(G)
+    except ValueError:
+        W, G, said = _oriented(V, T, SAME)
+        loops = topology(G)
+    if len(loops) > 1:
+        W, G = _without_chords(W, G, loops)
+    return Clean(W, G, loops, said)
+
+
+def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
+    """Faces F of any sizes as an oriented manifold of triangles: (V, T (t, 3), sentences).
+
+    With `merge`, vertices at one place become one where the surface stays a manifold.
+    ValueError, with vertices of V, for what no step can repair.
+    """
+    T = triangulate(V, F)
+    F = F.tolist() if isinstance(F, np.ndarray) else F
+    for tolerance in (NEAR, SAME, None) if merge else (None,):
         try:
-            T, merged, more, turned = _manifold(V, T, tolerance)
+            V, T, said = _oriented(V, T, tolerance)
             break
         except ValueError as error:
             reason = error
     else:
         raise reason
-    if merge and tolerance is None and not lost:
-        said.append(f"duplicate vertices were not merged: {reason}")
-    for number, kind, done in (
-        (merged, "duplicate vertex", "merged"),
-        (dropped + more, "collapsed or double triangle", "dropped"),
-        (turned, "triangle", "turned round, so that all are oriented alike"),
-        (len(V) - merged - len(np.unique(T)), "unused vertex", "dropped"),
-    ):
-        said += [_count(number, kind, done)] if number else []
-    used, T = np.unique(T, return_inverse=True)
-    V, T = V[used], T.reshape(-1, 3)
-    _refuse_flat(V, T)
-    return V, T, said
+    if merge and tolerance is None:
+        said.insert(0, f"duplicate vertices were not merged: {reason}")
+    first = {
+        "faces with more than three corners cut into triangles": sum(len(f) > 3 for f in F),
+        "faces without three different corners dropped": sum(len(set(f)) < 3 for f in F),
+    }
+    return V, T, _counted(first) + said
 
 
-def _count(number, kind, done):
-    """`1 face was cut` or `2 faces were cut`."""
-    for one, many in (("vertex", "vertices"), ("triangle", "triangles"), ("face", "faces")):
-        if number != 1 and one in kind:
-            return f"{number} {kind.replace(one, many)} were {done}"
-    return f"{number} {kind} was {done}"
-
-
-def _manifold(V, T, tolerance):
-    """Triangles oriented alike, and how many vertices were merged, triangles dropped, turned."""
-    dropped = merged = 0
+def _oriented(V, T, tolerance=None):
+    """(V, T, sentences): an oriented manifold, merged where there is a tolerance."""
+    T, dropped = drop(T)
+    merged = more = 0
     if tolerance is not None:
-        same = same_place(V, T, tolerance)
-        merged = len(np.unique(T)) - len(np.unique(same[T]))
-        T, dropped = _extended(same[T])
-        if tolerance and dropped:
-            raise ValueError("the tolerance is too large for this mesh")
-    if not len(T):
+        T, merged = merge(V, T, tolerance)
+        T, more = drop(T)
+    if more and tolerance == NEAR:
+        raise ValueError("the tolerance is too large for this mesh")
+    T, turned = orient(T)
+    normals(V, T)
+    require_single_fans(V, T, mesh.opposites(T))
+    used, T = np.unique(T, return_inverse=True)
+    done = {
+        "duplicate vertices merged": merged,
+        "collapsed or double triangles dropped": dropped + more,
+        "triangles turned round, so that all are oriented alike": turned,
+        "vertices of no face left out": len(V) - merged - len(used),
+    }
+    return V[used], T.reshape(-1, 3), _counted(done)
+
+
+def _counted(done):
+    return [f"{what}: {count}" for what, count in done.items() if count]
+
+
+def merge(V: np.ndarray, F: np.ndarray, tolerance: float) -> tuple:
+    """(faces F with the first of the vertices at each place only, how many others went).
+
+    tolerance: how close vertices are at one place, as a part of the bounding box of the faces.
+    """
+    used, corner = np.unique(F, return_inverse=True)
+    points, place = np.unique(V[used] + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
+    radius = tolerance * np.linalg.norm(np.ptp(points, axis=0))
+    near = cKDTree(points).query_pairs(radius, output_type="ndarray")
+    place = components(len(points), *near.T)[place.ravel()]
+    _, first = np.unique(place, return_index=True)
+    return used[first[place[corner]]].reshape(F.shape), len(used) - len(first)
+
+
+def drop(T: np.ndarray) -> tuple:
+    """(triangles with three different corners, each once; how many went); ValueError for none."""
+    corners = np.sort(T, axis=1)
+    good = np.diff(corners).all(axis=1)
+    if not good.any():
         raise ValueError("no face has three different corners")
-    one, two = pairs(T).T
-    differ = T.ravel()[one] == T.ravel()[two]
-    turn, loop = two_colour(len(T), one // 3, two // 3, differ)
-    if loop is not None:
-        raise ValueError(f"the surface has only one side (see the triangles {loop[:6]} ...)")
-    graph = coo_array((np.ones(len(one)), (one // 3, two // 3)), shape=(len(T),) * 2)
-    pieces, piece = connected_components(graph, directed=False)
-    share = np.bincount(piece, turn, pieces) / np.bincount(piece, minlength=pieces)
-    turn = turn ^ (share > 0.5)[piece]
-    T = np.where(turn[:, None], T[:, ::-1], T)
-    pinched = np.intersect1d(np.flatnonzero(~igl.is_vertex_manifold(T)), T)
-    if pinched.size:
-        raise ValueError(
-            f"the faces at vertex {pinched[0]}, near {_place(V[pinched[0]])}, form two fans: "
-            "not a manifold"
-        )
-    return T, merged, dropped, int(turn.sum())
-
-
-def _extended(T):
-    """Triangles with three different corners, each once; and how many were dropped."""
-    T = np.asarray(T, dtype=np.int64).reshape(-1, 3)
-    good = (T[:, 0] != T[:, 1]) & (T[:, 1] != T[:, 2]) & (T[:, 2] != T[:, 0])
-    _, first = np.unique(np.sort(T[good], axis=1), axis=0, return_index=True)
+    _, first = np.unique(corners[good], axis=0, return_index=True)
     kept = np.flatnonzero(good)[np.sort(first)]
     return T[kept], len(T) - len(kept)
 
 
-def same_place(V, T, tolerance):
-    """For each vertex the first one at its place, up to tolerance x the bounding box: (n,).
+def orient(T: np.ndarray) -> tuple:
+    """(triangles oriented alike, how many were turned): the more frequent side of a piece wins.
 
-    V: (n, 3); T: the vertices that count, integers of any shape.
+    ValueError for edges of more than two triangles and for one-sided surfaces.
     """
-    used = np.unique(T)
-    radius = tolerance * np.linalg.norm(np.ptp(V[used], axis=0))
-    if radius > 0:
-        near = used[cKDTree(V[used]).query_pairs(radius, output_type="ndarray")]
-        graph = coo_array((np.ones(len(near)), near.T), shape=(len(V),) * 2)
-        _, place = connected_components(graph, directed=False)
-    else:
-        _, place = np.unique(V + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
-    place = place.ravel()
-    _, first = np.unique(place, return_index=True)
-    return first[place]
+    one, two = mesh.pairs(T).T
+    clash = T.ravel()[one] == T.ravel()[two]
+    turn, loop = mesh.two_colour(len(T), one // 3, two // 3, clash)
+    if loop is not None:
+        raise ValueError(f"the surface is one-sided: see the loop of triangles {loop[:6]} ...")
+    piece = components(len(T), one // 3, two // 3)
+    turn ^= (np.bincount(piece, turn) > np.bincount(piece) / 2)[piece]
+    return np.where(turn[:, None], T[:, ::-1], T), int(turn.sum())
 
 
-def _refuse_flat(V, T):
-    a, b, c = np.moveaxis(V[T], 1, 0)
-    area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    longest = np.max([np.sum((p - q) ** 2, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
-    flat = np.flatnonzero(~(area > 1e-12 * longest))
-    if flat.size:
+def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
+    """Unit normals (t, 3) of triangles; ValueError where one has no area."""
+    sides = V[np.roll(T, -1, axis=1)] - V[T]
+    normal = np.cross(sides[:, 0], -sides[:, 2])
+    area = np.linalg.norm(normal, axis=1)
+    flat = ~(area > FLAT * np.sum(sides**2, axis=2).max(axis=1))
+    if flat.any():
+        corners = T[np.argmax(flat)].tolist()
+        raise ValueError(f"the triangle {corners} near {_place(V[corners[0]])} has no area")
+    return normal / area[:, None]
+
+
+def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
+    """ValueError where two fans of triangles share a vertex only; twin: `mesh.opposites(T)`."""
+    _, first = np.unique(corner_fans(T, twin), return_index=True)
+    pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
+    if pinched.size:
+        k, near = pinched[0], _place(V[pinched[0]])
+        raise ValueError(f"the faces at vertex {k}, near {near}, form two fans: not a manifold")
+
+
+def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
+    """The number (3 t,) of each corner's fan: triangles around a vertex, joined by edges.
+
+    twin: the opposite half-edges, -1 where the fans end.
+    """
+    after = np.roll(np.arange(T.size).reshape(-1, 3), -1, axis=1).ravel()
+    half = np.flatnonzero(twin >= 0)
+    return components(T.size, half, after[twin[half]])
+
+
+def topology(T: np.ndarray) -> list:
+    """The boundary loops of oriented triangles, longest first; ValueError if no disk or ring."""
+    one, two = mesh.pairs(T).T // 3
+    sizes = np.sort(np.bincount(components(len(T), one, two)))[::-1]
+    if len(sizes) > 1:
         raise ValueError(
-            f"{_count(flat.size, 'triangle', 'found')} without area: the corners of one, near "
-            f"{_place(a[flat[0]])}, lie on a line"
+            f"the surface has {len(sizes)} separate pieces (of {', '.join(map(str, sizes[:4]))} "
+            f"{'... ' if len(sizes) > 4 else ''}faces): one is wanted, cover them one by one"
         )
+    loops = mesh.boundary_loops(T)
+    euler = len(np.unique(T)) - (T.size + sum(map(len, loops))) // 2 + len(T)
+    handles = (2 - len(loops) - euler) // 2
+    if handles or len(loops) not in (1, 2):
+        raise ValueError(
+            f"the surface {'has' if loops else 'is closed: it has'} {len(loops)} boundary loops "
+            f"and {handles} handles: cut it into disks (1 loop, no handle) or rings (2 loops, no "
+            "handle)"
+        )
+    return sorted(loops, key=len, reverse=True)
+
+
+def _without_chords(V, T, loops):
+    """The same surface, edges inside that join two vertices of one boundary loop halved.
+
+    A boundary can then become a straight line, and no triangle with it.
+    """
+    one = mesh.pairs(T)[:, 0]
+    ends = np.stack([T.ravel()[one], np.roll(T, -1, axis=1).ravel()[one]], axis=1)
+    chords = np.concatenate([ends[np.isin(ends, loop).all(axis=1)] for loop in loops])
+    for number, (a, b) in enumerate(chords, start=len(V)):
+        both = (a == T).any(axis=1) & (b == T).any(axis=1)
+        halves = [np.where(T[both] == end, number, T[both]) for end in (a, b)]
+        T = np.concatenate([*halves, T[~both]])
+    return np.concatenate([V, V[chords].mean(axis=1)]), T
+
+
+def components(count: int, one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    """The number of the connected component of each of `count` nodes joined by edges one-two."""
+    graph = coo_array((np.ones(len(one), dtype=np.int8), (one, two)), shape=(count, count))
+    return connected_components(graph, directed=False)[1]
 
 
 def _place(point):
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
-# --- polygons -----------------------------------------------------------------------------
-
-
-def weld(V, F):
+def weld(V: np.ndarray, F: np.ndarray) -> tuple:
     """The mesh with equal points as one vertex, in the order of their first use: (V, F).
 
     V: (n, 3), F: integers of any shape.  Unused vertices go.
     """
     _, first, place = np.unique(V[F.ravel()] + 0.0, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return V[F.ravel()[first[order]]], rank[place.ravel()].reshape(F.shape)
+    return V[F.ravel()[first[order]]], np.argsort(order)[place.ravel()].reshape(F.shape)
 
 
-def triangulate(V, F):
-    """Triangles (t, 3) of faces of any sizes, in their order, without corners said twice.
+def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
+    """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
-    V: (n, 3), F: (f, k) or a list of faces.  Quads are cut along the shorter diagonal, larger
-    polygons ear by ear.  ValueError where no ear is left: no area, or sides that cross.
+    Quads are cut along the shorter diagonal, larger polygons ear by ear.  ValueError where no
+    ear is left: no area, or sides that cross.
     """
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]
-    faces = [_once(face) for face in F]
+    faces = [  # without corners that repeat the one before
+        [k for k, before in zip(face, [face[-1], *face[:-1]], strict=True) if k != before]
+        for face in F
+    ]
     sizes = np.array([len(face) for face in faces])
-    parts = [np.empty((0, 3), dtype=np.int64)]
-    owner = [np.empty(0, dtype=np.int64)]
+    parts, owner = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for size in np.unique(sizes[sizes >= 3]):
         which = np.flatnonzero(sizes == size)
-        group = np.array([faces[k] for k in which], dtype=np.int64)
-        if size == 4 and all(len(set(face)) == 4 for face in group.tolist()):
+        group = np.array([faces[k] for k in which])
+        if size == 4 and np.diff(np.sort(group)).all():
             group = mesh.triangles(V, group)[1]
         elif size > 3:
-            group = np.concatenate(
-                [face[_ears(V[face], k)] for k, face in zip(which, group, strict=True)]
-            )
+            group = np.concatenate([face[_ears(V[face])] for face in group])
         parts.append(group)
         owner.append(np.repeat(which, size - 2))
     return np.concatenate(parts)[np.argsort(np.concatenate(owner), kind="stable")]
 
 
-def _once(face):
-    """The face without corners that repeat the one before."""
-    face = [int(k) for k in face]
-    return [k for k, before in zip(face, face[-1:] + face[:-1], strict=True) if k != before]
-
-
-def _ears(P, number):
+def _ears(P):
     """Triangles (k - 2, 3) of one polygon with corners P (k, 3): the shortest good cut first.
 
     Of equally short ones the first; three corners on a line are no ear.
     """
     normal = np.cross(P - P[0], np.roll(P, -1, axis=0) - P[0]).sum(axis=0)
     normal /= np.linalg.norm(normal) or 1.0
-    left, found = list(range(len(P))), []
-    while len(left) > 3:
-        cuts = []
-        for k, middle in enumerate(left):
-            ear = left[k - 1], middle, left[(k + 1) % len(left)]
-            others = [c for c in left if c not in ear]
-            if _is_ear(P, normal, ear, others):
-                cuts.append((float(np.linalg.norm(P[ear[2]] - P[ear[0]])), k, ear))
-        if not cuts:
-            raise ValueError(f"face {number} has no area, or sides that cross")
-        _, k, ear = cuts[ties.first_smallest([length for length, *_ in cuts])]
-        found.append(ear)
-        del left[k]
-    return np.array([*found, left])
-
-
-def _is_ear(P, normal, ear, others):
-    """Whether the triangle is turned like the polygon, with none of the other corners in it."""
-    sides = [(P[ear[k]], P[ear[(k + 1) % 3]]) for k in range(3)]
     little = FLAT * np.sum(np.ptp(P, axis=0) ** 2)
-    if not np.cross(sides[0][1] - sides[0][0], sides[1][1] - sides[1][0]) @ normal > little:
-        return False
-    inside = [np.cross(b - a, P[others] - a) @ normal >= -little for a, b in sides]
-    return not np.all(inside, axis=0).any()
+    left, found = np.arange(len(P)), []
+    while len(left) > 3:
+        ears = np.stack([np.roll(left, 1), left, np.roll(left, -1)], axis=1)
+        sides = P[np.roll(ears, -1, axis=1)] - P[ears]
+        turned = np.cross(sides[:, 0], sides[:, 1]) @ normal > little
+        inside = np.cross(sides[:, :, None], P[left] - P[ears][:, :, None]) @ normal >= -little
+        good = np.flatnonzero(turned & (inside.all(axis=1).sum(axis=1) == 3))  # its own corners
+        if not good.size:
+            raise ValueError(f"the face at {_place(P[0])} has no area, or sides that cross")
+        cuts = np.linalg.norm(P[ears[good, 2]] - P[ears[good, 0]], axis=1)
+        k = good[ties.first_smallest(cuts)]
+        found.append(ears[k])
+        left = np.delete(left, k)
+    return np.array([*found, left])

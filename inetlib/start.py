@@ -1,13 +1,13 @@
-"""The way in of `inet`, as a process of its own: Ctrl-C ends it at any moment, with a sentence.
+"""The way in of `inet` as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-A KeyboardInterrupt that is raised while packages are loaded, or in callbacks, becomes another
-error or gets lost.  So nothing is raised: the handler tidies up, speaks, and ends the process.
-It is installed before the slow imports, and only by programs; `cli.main` installs none.
+Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks:
+a handler tidies up, speaks, and ends the process.  Only programs install it, before all else.
 """
 
 import os
 import signal
 import sys
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 from . import files
@@ -16,39 +16,34 @@ SIGNALS = signal.SIGINT, signal.SIGTERM
 ENDS = []  # functions without arguments that end what this process has started
 
 
-def main(arguments=None):
+def main(arguments: list[str] | None = None) -> int:
     """`cli.main` for a process of its own: the exit code, or the end by a signal: 130."""
     words = sys.argv[1:] if arguments is None else arguments
     quiet = words[:1] in (["figures"], ["explore"])
-
-    def sentence():
-        return "inet: stopped" + ", nothing was written" * (not quiet and not files.WRITTEN)
-
-    listen(sentence)
+    listen(lambda: f"inet: stopped{', nothing was written' * (not quiet and not files.WRITTEN)}")
     from .cli import main as run
 
-    code = run(arguments)
+    code = run(words)
     finished()
     return code
 
 
-def listen(sentence, fresh=False):
+def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    sentence() is said on stderr; fresh: on a new line, where a progress bar may be.  A signal
-    that was ignored stays so, as for programs in the background of a script.
+    sentence() is said on stderr; fresh: on a new line, after a progress bar.  A signal that
+    was ignored stays so, as for programs in the background of a script.
     """
 
     def stop(number, frame):
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         try:
-            for end in ENDS:
+            for end in [*ENDS, files.clear]:
                 end()
-            files.clear()
         finally:
+            line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
             with suppress(OSError):  # nobody may be there to read it
-                line = "\n" * (fresh or os.isatty(2)) + sentence() + "\n"
                 os.write(2, line.encode())  # sys.stderr may be in the midst of a line
             os._exit(128 + number)
 
@@ -57,13 +52,13 @@ def listen(sentence, fresh=False):
             signal.signal(number, stop)
 
 
-def finished():
+def finished() -> None:
     """The work is done: Ctrl-C no longer changes how this process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager
-def held():
+def held() -> Iterator[None]:
     """Signals wait until the block has ended: it starts what must be known to be ended."""
     waiting = []
     handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}

@@ -2,8 +2,6 @@
 
 pyvista is imported when a scene is asked for, never before.  Where it or OpenGL is missing,
 the error is a sentence; every figure of the project is drawn by `plot` instead, without OpenGL.
-
-Paper: Figs. 7-13 (scenes).
 """
 
 import io
@@ -16,7 +14,7 @@ from functools import cache
 import numpy as np
 import PIL.Image
 
-from . import explorer, mesh, plot
+from . import mesh, plot
 
 SIZE = (600, 460)  # pixels
 COLOURS = plot.COLOURS | {"face": plot.PALE}
@@ -26,15 +24,15 @@ NO_OPENGL = (
     "libegl1 and libgl1-mesa-dri; inetlib.plot draws without OpenGL"
 )
 PROBE = (
-    "from inetlib import view; pv = view._pyvista(); p = pv.Plotter(off_screen=True, "
+    "from inetlib import view; pv = view.pyvista_module(); p = pv.Plotter(off_screen=True, "
     "window_size=(64, 64)); p.add_mesh(pv.Sphere(), color='black'); image = p.screenshot(); "
     "raise SystemExit(int(image.std() < 1))"
 )
 
 
-def _pyvista():
+def pyvista_module():
     """The module, told to draw without a display where there is none; or an ImportError."""
-    if _headless():
+    if headless():
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     try:
         with warnings.catch_warnings():  # in a notebook without ipywidgets
@@ -45,7 +43,8 @@ def _pyvista():
     return pyvista
 
 
-def _headless():
+def headless():
+    """Whether there is no display here: on Linux, where DISPLAY says so."""
     return sys.platform.startswith("linux") and not os.environ.get("DISPLAY")
 
 
@@ -57,7 +56,7 @@ def available():
     process instead of raising an error.
     """
     try:
-        _pyvista()
+        pyvista_module()
         command = [sys.executable, "-c", PROBE]
         code = subprocess.run(command, capture_output=True, timeout=120).returncode
     except ImportError as error:
@@ -79,7 +78,7 @@ def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), liv
     viewer; z points up.  live: for a window.  ImportError without pyvista, RuntimeError
     without OpenGL.
     """
-    pyvista = _pyvista()
+    pyvista = pyvista_module()
     V, Q = mesh.check_arrays(V, Q)
     works, sentence = available()
     if not works:
@@ -96,11 +95,11 @@ def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), liv
         if len(lines):
             tubes = _polylines(pyvista, V, lines).tube(radius=radius, n_sides=12)
             plotter.add_mesh(tubes, color=colours[name], ambient=0.35, smooth_shading=True)
-    _aim(plotter.camera, V, *view)
+    aim(plotter.camera, V, *view)
     return plotter
 
 
-def _aim(camera, V, azimuth, elevation, aspect=SIZE[0] / SIZE[1]):
+def aim(camera, V, azimuth, elevation, aspect=SIZE[0] / SIZE[1]):
     """Orthographic, like `plot.camera`, and as near as the whole net allows."""
     flat, near = plot.camera(azimuth, elevation)(np.eye(3))
     axes = np.vstack([flat.T, near])  # to the right, up, towards the viewer
@@ -130,31 +129,23 @@ def picture(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5)):
 
 
 def show(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None):
-    """The `scene` for a reader: to be turned by hand, or as a still IPython Image.
+    """The `scene` for a reader: a window to turn it by hand, or a still IPython Image.
 
-    live: True, False, or by default True when there is a person before it: in a JupyterLab
-    session, where the net becomes a page of `explorer` that the browser draws (in its own
-    colours and widths, with the families that have curves), or a script with a display.  A
-    notebook that a tool runs stores a still picture.
+    live: True, False, or by default True for a script with a display.  In JupyterLab see
+    `explorer.turn`.
     """
-    notebook = "ipykernel" in sys.modules
     if live is None:
-        live = explorer.person() if notebook else not _headless()
-    if live and not notebook:
+        live = "ipykernel" not in sys.modules and not headless()
+    if live:
         return scene(V, Q, families, colours, width, view, live=True).show()
-    drawn = V, Q, families, colours, width, view
-    if not live:
-        return explorer.still(_png(picture(*drawn)))
-    still = _png(picture(*drawn)) if available()[0] else None  # explorer draws one without OpenGL
-    names = mesh.Families._fields
-    if families is not None:
-        names = [name for name in names if len(getattr(families, name))]
-    return explorer.show_net(V, Q, names, view, picture=still)
+    from IPython.display import Image
+
+    return Image(data=png(V, Q, families, colours, width, view), format="png")
 
 
-def _png(image):
-    """The bytes of a small file with an RGB picture."""
-    file = io.BytesIO()
+def png(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5)):
+    """The `picture` as the bytes of a small file."""
+    file, image = io.BytesIO(), picture(V, Q, families, colours, width, view)
     small = PIL.Image.fromarray(image).quantize(192, dither=PIL.Image.Dither.NONE)
     small.save(file, format="png", optimize=True)
     return file.getvalue()

@@ -1,5 +1,6 @@
 """Drawing without a screen, and properties that try the same examples on every machine."""
 
+import inspect
 import sys
 from pathlib import Path
 
@@ -16,6 +17,15 @@ settings.load_profile("still")
 
 def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="the tests marked long, too: half an hour")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem):
+    """Tests that are coroutines run in the event loop of the fixture `run`."""
+    if inspect.iscoroutinefunction(pyfuncitem.function):
+        given = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
+        pyfuncitem.funcargs["run"](pyfuncitem.function(**given))
+        return True
 
 
 def pytest_collection_modifyitems(config, items):

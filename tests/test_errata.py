@@ -217,13 +217,6 @@ def test_e18_the_angles_of_eq_5_lie_between_f_u_and_the_diagonals():
     assert min(abs(abs(np.cos(printed)) - abs(c)) for c in (cos_alpha, cos_beta)) > 1e-2
 
 
-def test_the_labels_start_at_the_top_left():
-    V = np.array([[0, 1, 0], [0, 0, 0], [1, 0, 0], [1.2, 1.3, 0]])
-    lam, mu = measure.ratios(V, [[0, 1, 2, 3]])
-    turned = measure.ratios(V, np.roll([[0, 1, 2, 3]], 1, axis=1))
-    assert np.allclose([lam * turned[0], mu * turned[1]], 1) and mesh.is_labelled([[0, 1, 2, 3]])
-
-
 def conjugate_with(helicoid, t):
     """cos t C + sin t H as a surface, H given by a function of u and v."""
     u, v = sp.symbols("u v", real=True)

@@ -169,14 +169,11 @@ def test_families_come_in_one_order_and_may_be_none():
             assert changed(Choice(), families=value) == (Choice(families=some), [])
 
 
-def test_a_profile_has_seven_radii():
+def test_a_profile_has_seven_radii_in_their_range():
     for value in chain(*(((1.0,) * k, ",".join(["1"] * k)) for k in (0, 1, 6, 8, 700))):
         sentence = refused("radii", value)
         assert "radii" in sentence and "7 numbers" in sentence
         assert all(name in sentence for name in choices.PROFILES)
-
-
-def test_a_wrong_radius_is_refused_with_the_range():
     for value in ("0", "0.0499", "3.01", "nan", "-1", "thick", ""):
         sentence = refused("radii", f"1,1,{value},1,1,1,1")
         assert repr(value) in sentence and "from 0.05 to 3" in sentence and "radius" in sentence
@@ -205,11 +202,6 @@ def test_long_and_hostile_values_are_shortened_and_made_harmless(name):
         assert sentence.isprintable()
         problems = parse(f"?{name}={start}" + "z" * 9000)[1]
         assert len(problems) == 1 and len(problems[0]) < 160
-
-
-def test_a_long_name_in_a_link_is_shortened():
-    choice, problems = parse("x" * 3000 + "=1")
-    assert choice == Choice() and len(problems) == 1 and len(problems[0]) < 60
 
 
 def test_each_wrong_value_has_a_sentence_of_its_own_and_the_good_ones_are_taken():
@@ -278,7 +270,6 @@ def test_locked_angles_are_equal_and_only_sheets_are_bent_beyond_90_degrees(chan
         assert problems == [] or (values["bend"] > 90 and choice.surface != "rolled")
         assert choice.theta == choice.theta0 or not choice.lock
         assert choice.bend <= (350 if choice.surface == "rolled" else 90)
-        assert choices.limits(choice, "bend")[:2] == (0, 350 if choice.surface == "rolled" else 90)
 
 
 @pytest.mark.parametrize("other", ["minimal", "sphere"])
@@ -312,7 +303,9 @@ def test_a_link_changes_the_choice_that_is_there_and_the_last_word_counts():
     assert asdict(after) == asdict(before) | {"theta": 71.0, "parallelograms": True}
 
 
-def test_no_link_is_too_long():
+def test_no_link_and_no_name_in_it_is_too_long():
+    choice, problems = parse("x" * 3000 + "=1")
+    assert choice == Choice() and len(problems) == 1 and len(problems[0]) < 60
     choice, problems = parse("&".join(f"a{k}=1" for k in range(100_000)) + "&theta=20")
     assert choice == Choice() and 0 < len(problems) < 1000  # the rest is not looked at
 
@@ -380,32 +373,20 @@ def test_the_angles_of_sampled_nets_are_off_by_the_square_of_the_edge(name, angl
     assert "exact" not in fine.message
 
 
+DIGITS = {"theta": 60.12345678901234, "theta0": 100 / 3, "bend": 200 / 7, "px": 1 / 7, "pz": 20 / 7}
+
+
 @each_constructed
-def test_three_lines_of_python_make_exactly_the_same_net(name):
-    for theta, theta0, m, n, bend in (
-        (60, 60, 3, 1, 0),
-        (33.3, 141.7, 9, 14, 90),
-        (90, 90, 5, 5, 7),
-    ):
-        asked = {"theta": theta, "theta0": theta0, "m": m, "n": n, "bend": bend}
-        found = built(**asked | {"radii": "hourglass"} | POLE | CONSTRUCTED[name])
+def test_three_lines_of_python_make_exactly_the_same_net_and_keep_all_digits(name):
+    names = "theta", "theta0", "m", "n", "bend"
+    rows = (60, 60, 3, 1, 0), (33.3, 141.7, 9, 14, 90), (90, 90, 5, 5, 7)
+    asked = [dict(zip(names, row, strict=True)) | {"radii": "hourglass"} | POLE for row in rows]
+    for values in (*asked, {"m": 5, "n": 5} | DIGITS):
+        found = built(**CONSTRUCTED[name] | values)
         assert same(found.code(), found.V, found.Q)
         again, problems = parse(found.link())
         assert problems == []
-        assert np.array_equal(nets.construct(again).V, found.V)
-
-
-@each_constructed
-def test_a_value_with_all_its_digits_is_not_rounded_in_the_code(name):
-    long = {
-        "theta": 60.12345678901234,
-        "theta0": 100 / 3,
-        "bend": 200 / 7,
-        "px": 1 / 7,
-        "pz": 20 / 7,
-    }
-    found = built(**{"m": 5, "n": 5} | CONSTRUCTED[name] | long)
-    assert same(found.code(), found.V, found.Q)
+        assert np.array_equal(nets.make(again).V, found.V)
 
 
 @each_constructed
@@ -720,7 +701,7 @@ def test_a_given_net_is_checked(bad):
 # --- saving -------------------------------------------------------------------------------
 
 
-PACKAGES = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
+PACKAGES = {".vtp": "pyvista", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
 
 
 def package(suffix):
@@ -746,48 +727,19 @@ def vase():
     return built(kind="revolution", m=7, n=4)
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp"])
-def test_saved_nets_come_back_from_their_bytes_bit_by_bit(vase, scratch, tmp_path, suffix):
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp", ".glb", ".dxf", ".3dm"])
+def test_saved_nets_are_the_files_that_io_writes(vase, scratch, tmp_path, suffix):
     package(suffix)
-    path = tmp_path / f"back{suffix}"
-    path.write_bytes(vase.save(suffix))
-    V, Q = io.read(path)
-    assert np.array_equal(V, vase.V) and np.array_equal(Q, vase.Q)
+    path, saved = tmp_path / f"net{suffix}", vase.save(suffix)
+    io.write(path, vase.V, vase.Q, "all" if suffix in io.WITH_CURVES else None)
+    written = path.read_bytes()
+    assert (
+        saved == written if suffix not in (".dxf", ".3dm") else abs(len(saved) - len(written)) < 99
+    )
+    path.write_bytes(saved)
+    if suffix in (".obj", ".ply", ".off", ".vtp"):
+        assert all(map(np.array_equal, io.read(path), (vase.V, vase.Q)))
     assert list(scratch.iterdir()) == []
-
-
-def test_a_saved_glb_has_the_points_of_the_net_as_float32(vase, scratch, tmp_path):
-    path = tmp_path / "back.glb"
-    path.write_bytes(vase.save(".glb"))
-    V, F = io.read(path)
-    assert F.shape == (2 * len(vase.Q), 3)
-    near, _, _ = igl.point_mesh_squared_distance(vase.V, V, F)
-    assert np.sqrt(near).max() < 1e-6
-    assert list(scratch.iterdir()) == []
-
-
-@pytest.mark.parametrize("suffix", [".dxf", ".3dm"])
-def test_saved_drawings_open_in_the_programs_of_others(vase, scratch, tmp_path, suffix):
-    reader = package(suffix)
-    path = tmp_path / f"back{suffix}"
-    path.write_bytes(vase.save(suffix))
-    if suffix == ".dxf":
-        meshes = reader.readfile(path).modelspace().query("MESH")
-        V = np.array([tuple(v) for v in meshes[0].vertices])
-    else:
-        objects = [o.Geometry for o in reader.File3dm.Read(str(path)).Objects]
-        found = next(g for g in objects if isinstance(g, reader.Mesh)).Vertices
-        V = np.array([[found[k].X, found[k].Y, found[k].Z] for k in range(len(found))])
-    assert np.allclose(V, vase.V, atol=1e-6)
-    assert list(scratch.iterdir()) == []
-
-
-@pytest.mark.parametrize("suffix", [".obj", ".vtp", ".glb"])
-def test_formats_with_a_place_for_curves_get_them(vase, tmp_path, suffix):
-    package(suffix)
-    bare = tmp_path / f"bare{suffix}"
-    io.write(bare, vase.V, vase.Q)
-    assert len(vase.save(suffix)) > len(bare.read_bytes())
 
 
 @each_layout
@@ -1138,20 +1090,12 @@ def test_short_numbers_are_short_and_near(x, digits):
     assert value == pytest.approx(x, rel=0.51 * 10.0 ** (1 - digits), abs=1e-300)
 
 
-@pytest.mark.parametrize(
-    ("x", "text"),
-    [
-        (0, "0"),
-        (0.25, "0.25"),
-        (-0.25, "\u22120.25"),
-        (4.321e-13, "4.3e\u221213"),
-        (1.5e-7, "1.5e\u22127"),
-        (2e12, "2e12"),
-        (3e6, "3e6"),
-    ],
-)
-def test_short_numbers_are_written_as_on_paper(x, text):
-    assert plates.short(x) == text
+WRITTEN = {0: "0", 0.25: "0.25", -0.25: "\u22120.25", 3e6: "3e6", 2e12: "2e12"}
+WRITTEN |= {4.321e-13: "4.3e\u221213", 1.5e-7: "1.5e\u22127"}
+
+
+def test_short_numbers_are_written_as_on_paper():
+    assert {x: plates.short(x) for x in WRITTEN} == WRITTEN
 
 
 def test_the_texts_of_the_numbers_say_what_the_numbers_say():

@@ -109,21 +109,22 @@ def shared(serve, run):
 
 
 @pytest.fixture
-def tab(shared, run):
-    """tab(work): run `await work(app)` with a tab that nobody has used."""
+def app(shared, run):
+    """The app of a tab that nobody has used."""
+    shared.session, shared.sight, shared.fitted = Session(), None, None
 
-    async def new(work):
-        shared.session, shared.sight, shared.fitted = Session(), None, None
+    async def fresh():
         shared.state.update({"numbers": {}, "alert": "", "progress": "", "searching": False})
-        try:
-            await work(shared)
-        finally:
-            shared.stop()
-            for task in (shared._task, shared._search):
-                if task is not None:
-                    task.cancel()
 
-    return lambda work: run(new(work))
+    async def end():
+        shared.stop()
+        for task in (shared._task, shared._search):
+            if task is not None:
+                task.cancel()
+
+    run(fresh())
+    yield shared
+    run(end())
 
 
 async def arrived(app, query="", dark=False):
@@ -165,19 +166,16 @@ def shown(app):
     return {name: app.state[name] for name in choices.NAMES}
 
 
-def test_a_tab_shows_the_net_of_its_link(tab):
-    async def work(app):
-        await arrived(app, "?theta=50&map=exp&m=5&n=4&families=d1")
-        alone = made(theta=50, map="exp", m=5, n=4, families="d1")
-        assert np.array_equal(app.session.V, alone.V)
-        assert app.state.numbers == texts(alone) and app.state.message == alone.message
-        assert shown(app) == echo(alone.choice)
-        assert app.state.link == alone.link() and app.state.code == alone.code()
-        assert app.state.alert == app.state.problem == ""
-        for words in (app.state.parallelogram_svg, app.state.histogram_svg, app.state.profile_svg):
-            assert words.startswith("<svg")
-
-    tab(work)
+async def test_a_tab_shows_the_net_of_its_link(app):
+    await arrived(app, "?theta=50&map=exp&m=5&n=4&families=d1")
+    alone = made(theta=50, map="exp", m=5, n=4, families="d1")
+    assert np.array_equal(app.session.V, alone.V)
+    assert app.state.numbers == texts(alone) and app.state.message == alone.message
+    assert shown(app) == echo(alone.choice)
+    assert app.state.link == alone.link() and app.state.code == alone.code()
+    assert app.state.alert == app.state.problem == ""
+    for words in (app.state.parallelogram_svg, app.state.histogram_svg, app.state.profile_svg):
+        assert words.startswith("<svg")
 
 
 CHANGES = {
@@ -195,17 +193,14 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("name", CHANGES)
-def test_a_change_of_the_page_changes_net_numbers_code_and_link(tab, name):
-    async def work(app):
-        await arrived(app, "?m=6&n=5")
-        await change(app, **CHANGES[name])
-        alone = made(**{"m": 6, "n": 5} | CHANGES[name])
-        await until(lambda: app.state.link == alone.link())
-        await until(lambda: app.state.numbers == texts(alone))
-        assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
-        assert shown(app) == echo(alone.choice) and app.state.alert == ""
-
-    tab(work)
+async def test_a_change_of_the_page_changes_net_numbers_code_and_link(app, name):
+    await arrived(app, "?m=6&n=5")
+    await change(app, **CHANGES[name])
+    alone = made(**{"m": 6, "n": 5} | CHANGES[name])
+    await until(lambda: app.state.link == alone.link())
+    await until(lambda: app.state.numbers == texts(alone))
+    assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
+    assert shown(app) == echo(alone.choice) and app.state.alert == ""
 
 
 REFUSED = {
@@ -221,95 +216,77 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_a_refused_value_is_shown_back_as_the_former_one_with_a_sentence(tab, name):
-    async def work(app):
-        await arrived(app, "?m=6&n=5&theta=50&radii=cone")
-        before, V = shown(app), app.session.V
-        await change(app, **{name: REFUSED[name]})
-        await until(lambda: app.state.alert)
-        assert shown(app) == before and app.session.V is V
-        assert name in app.state.alert or "radi" in app.state.alert
-        await change(app, theta=70)  # and the page goes on
-        await until(lambda: app.state.numbers["theta"] == "70")
-        assert shown(app) == before | {"theta": 70.0}
-
-    tab(work)
+async def test_a_refused_value_is_shown_back_as_the_former_one_with_a_sentence(app, name):
+    await arrived(app, "?m=6&n=5&theta=50&radii=cone")
+    before, V = shown(app), app.session.V
+    await change(app, **{name: REFUSED[name]})
+    await until(lambda: app.state.alert)
+    assert shown(app) == before and app.session.V is V
+    assert name in app.state.alert or "radi" in app.state.alert
+    await change(app, theta=70)  # and the page goes on
+    await until(lambda: app.state.numbers["theta"] == "70")
+    assert shown(app) == before | {"theta": 70.0}
 
 
-def test_a_link_with_wrong_values_is_answered_with_sentences_and_a_net(tab):
-    async def work(app):
-        await arrived(app, "?theta=<script>&kind=cube&n=5&" + "x" * 5000 + "=1")
-        assert shown(app) == echo(Choice(n=5))
-        assert all(word in app.state.alert for word in ("theta", "kind", "xxx"))
-        assert len(app.state.alert) < 500 and app.state.numbers["theta"] == "60"
-
-    tab(work)
+async def test_a_link_with_wrong_values_is_answered_with_sentences_and_a_net(app):
+    await arrived(app, "?theta=<script>&kind=cube&n=5&" + "x" * 5000 + "=1")
+    assert shown(app) == echo(Choice(n=5))
+    assert all(word in app.state.alert for word in ("theta", "kind", "xxx"))
+    assert len(app.state.alert) < 500 and app.state.numbers["theta"] == "60"
 
 
-def test_two_tabs_share_nothing(serve, run):
-    async def both():
-        async with opened(serve, "two") as two:
-            async with opened(serve, "one") as one:
-                for app in (one, two):
-                    await arrived(app, "?m=4&n=4")
-                before, V = dict(two.state.to_dict()), two.session.V
-                await change(one, theta=70, kind="revolution", families=["d1"], dark=True)
-                await until(lambda: one.state.numbers["theta"] == "70")
-                assert dict(two.state.to_dict()) == before and two.session.V is V
-                assert (one.session.choice.theta, two.session.choice.theta) == (70, 60)
-            await change(two, theta=80)  # it lives on without the other one
-            await until(lambda: two.state.numbers["theta"] == "80")
-
-    run(both())
+async def test_two_tabs_share_nothing(serve, run):
+    async with opened(serve, "two") as two:
+        async with opened(serve, "one") as one:
+            for app in (one, two):
+                await arrived(app, "?m=4&n=4")
+            before, V = dict(two.state.to_dict()), two.session.V
+            await change(one, theta=70, kind="revolution", families=["d1"], dark=True)
+            await until(lambda: one.state.numbers["theta"] == "70")
+            assert dict(two.state.to_dict()) == before and two.session.V is V
+            assert (one.session.choice.theta, two.session.choice.theta) == (70, 60)
+        await change(two, theta=80)  # it lives on without the other one
+        await until(lambda: two.state.numbers["theta"] == "80")
 
 
-def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(tab):
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        numbers, V = app.state.numbers, app.session.V
-        await change(app, kind="revolution", theta=179.5, theta0=90)
-        await until(lambda: app.state.problem)
-        assert app.state.problem.startswith("no net: ") and app.session.V is V
-        assert app.state.numbers == numbers and not app.state.searching
-        await change(app, theta=70)
-        await until(lambda: app.state.numbers["theta"] == "70")
-        assert app.state.problem == ""
-
-    tab(work)
+async def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(app):
+    await arrived(app, "?m=4&n=4")
+    numbers, V = app.state.numbers, app.session.V
+    await change(app, kind="revolution", theta=179.5, theta0=90)
+    await until(lambda: app.state.problem)
+    assert app.state.problem.startswith("no net: ") and app.session.V is V
+    assert app.state.numbers == numbers and not app.state.searching
+    await change(app, theta=70)
+    await until(lambda: app.state.numbers["theta"] == "70")
+    assert app.state.problem == ""
 
 
-def test_what_is_only_shown_is_not_made_again(tab):
-    async def work(app):
-        await arrived(app, "?m=4&n=3")
-        V, cells = app.session.V, []
-        for looks in product((["u", "v"], ["u", "d1"]), (False, True)):
-            await change(app, families=looks[0], parallelograms=looks[1])
-            plan = look.layout(app.session.Q, len(V), *map(tuple, looks[:1]), looks[1])
-            want = len(plan.quads) + len(plan.triangles)
-            await until(lambda want=want: app.scene.faces.n_cells == want)
-            cells.append(want)
-            assert app.session.V is V
-        assert len(set(cells)) > 2
-        await change(app, dark=True)
-        await until(lambda: app.state.colours == look.DARK.families)
+async def test_what_is_only_shown_is_not_made_again(app):
+    await arrived(app, "?m=4&n=3")
+    V, cells = app.session.V, []
+    for looks in product((["u", "v"], ["u", "d1"]), (False, True)):
+        await change(app, families=looks[0], parallelograms=looks[1])
+        plan = look.layout(app.session.Q, len(V), *map(tuple, looks[:1]), looks[1])
+        want = len(plan.quads) + len(plan.triangles)
+        await until(lambda want=want: app.scene.faces.n_cells == want)
+        cells.append(want)
         assert app.session.V is V
+    assert len(set(cells)) > 2
+    await change(app, dark=True)
+    await until(lambda: app.state.colours == look.DARK.families)
+    assert app.session.V is V
 
-    tab(work)
 
-
-def test_what_goes_wrong_unexpectedly_is_said(tab, monkeypatch, capsys):
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        monkeypatch.setattr(nets, "construct", lambda choice: [][1])
-        await change(app, theta=70)
-        await until(lambda: app.state.problem)
-        assert "list index out of range" in app.state.problem
-        monkeypatch.undo()
-        await change(app, theta=80)
-        await until(lambda: app.state.numbers["theta"] == "80")
-        assert app.state.problem == ""
-
-    tab(work)
+async def test_what_goes_wrong_unexpectedly_is_said(app, monkeypatch, capsys):
+    await arrived(app, "?m=4&n=4")
+    monkeypatch.setattr(nets, "construct", lambda choice: [][1])
+    await change(app, theta=70)
+    await until(lambda: app.state.problem)
+    assert "list index out of range" in app.state.problem
+    monkeypatch.undo()
+    await change(app, theta=80)
+    await until(lambda: app.state.numbers["theta"] == "80")
+    assert app.state.problem == ""
     assert "IndexError" in capsys.readouterr().err
 
 
@@ -317,180 +294,145 @@ def test_what_goes_wrong_unexpectedly_is_said(tab, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("values", [{"kind": "freeform", "m": 5, "n": 4}, {"kind": "cover"}])
-def test_a_search_runs_to_its_end(tab, quick, values):
+async def test_a_search_runs_to_its_end(app, quick, values):
     values = {"quads": 60, "theta": 75} | values
 
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        assert not app.state.can_search
-        await change(app, **values)
-        await until(lambda: app.state.searching)
-        await until(lambda: not app.state.searching)
-        alone = made(**{"m": 4, "n": 4} | values)
-        assert np.array_equal(app.session.V, alone.V)
-        assert app.state.message == alone.message and app.state.can_search
-        assert app.state.numbers == texts(alone)
-        app.run()  # again
-        await until(lambda: app.state.searching)
-        await until(lambda: not app.state.searching)
-        assert np.array_equal(app.session.V, alone.V)
-
-    tab(work)
+    await arrived(app, "?m=4&n=4")
+    assert not app.state.can_search
+    await change(app, **values)
+    await until(lambda: app.state.searching)
+    await until(lambda: not app.state.searching)
+    alone = made(**{"m": 4, "n": 4} | values)
+    assert np.array_equal(app.session.V, alone.V)
+    assert app.state.message == alone.message and app.state.can_search
+    assert app.state.numbers == texts(alone)
+    app.run()  # again
+    await until(lambda: app.state.searching)
+    await until(lambda: not app.state.searching)
+    assert np.array_equal(app.session.V, alone.V)
 
 
-def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(tab, gate):
-    async def work(app):
-        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-        await until(lambda: app.state.progress == "start")
-        start = surfaces.freeform_patch(5, 5)[0]
-        assert np.array_equal(app.session.V, start) and app.state.searching
-        assert app.state.numbers["quads"] == "25"
-        app.stop()
-        gate.set()
-        await until(lambda: not app.state.searching)
-        assert "stopped" in app.state.message and app.state.problem == ""
-        assert np.array_equal(app.session.V, start)
-
-    tab(work)
+async def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(app, gate):
+    app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+    await until(lambda: app.state.progress == "start")
+    start = surfaces.freeform_patch(5, 5)[0]
+    assert np.array_equal(app.session.V, start) and app.state.searching
+    assert app.state.numbers["quads"] == "25"
+    app.stop()
+    gate.set()
+    await until(lambda: not app.state.searching)
+    assert "stopped" in app.state.message and app.state.problem == ""
+    assert np.array_equal(app.session.V, start)
 
 
-def test_stop_is_heard_before_the_first_step(tab, app_module, monkeypatch):
+async def test_stop_is_heard_before_the_first_step(app, app_module, monkeypatch):
     monkeypatch.setattr(app_module, "REST", 0.2)  # while it waits for further changes
     monkeypatch.setattr(app_module, "PACE", 0.001)
 
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        await change(app, kind="freeform")
-        await until(lambda: app.state.searching)
-        app.stop()
-        await until(lambda: not app.state.searching)
-        assert not app.session.message.startswith("converged")
-
-    tab(work)
+    await arrived(app, "?m=4&n=4")
+    await change(app, kind="freeform")
+    await until(lambda: app.state.searching)
+    app.stop()
+    await until(lambda: not app.state.searching)
+    assert not app.session.message.startswith("converged")
 
 
-def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(tab, gate):
-    async def work(app):
-        over, search = threading.Event(), app.session.search
+async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, gate):
+    over, search = threading.Event(), app.session.search
 
-        def searched(*args):
-            search(*args)
-            over.set()
+    def searched(*args):
+        search(*args)
+        over.set()
 
-        app.session.search = searched
-        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-        await until(lambda: app.state.progress == "start")
-        await change(app, kind="plane")
-        await until(lambda: not app.state.searching)
-        alone = made(m=5, n=5, theta=100)
-        assert app.state.numbers == texts(alone) and not over.is_set()
-        gate.set()
-        await until(over.is_set)
-        await asyncio.sleep(0.02)  # for what the thread may have left to do here
-        assert np.array_equal(app.session.V, alone.V) and app.state.numbers == texts(alone)
-        assert app.state.message == alone.message and not app.state.searching
-
-    tab(work)
+    app.session.search = searched
+    app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+    await until(lambda: app.state.progress == "start")
+    await change(app, kind="plane")
+    await until(lambda: not app.state.searching)
+    alone = made(m=5, n=5, theta=100)
+    assert app.state.numbers == texts(alone) and not over.is_set()
+    gate.set()
+    await until(over.is_set)
+    await asyncio.sleep(0.02)  # for what the thread may have left to do here
+    assert np.array_equal(app.session.V, alone.V) and app.state.numbers == texts(alone)
+    assert app.state.message == alone.message and not app.state.searching
 
 
-def test_a_newer_search_takes_the_place_of_an_older_one(tab, gate):
-    async def work(app):
-        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-        await until(lambda: app.state.progress == "start")
-        await change(app, theta=75)
-        gate.set()
-        alone = made(kind="freeform", m=5, n=5, theta=75)
-        await until(lambda: not app.state.searching and app.state.numbers == texts(alone))
-        assert np.array_equal(app.session.V, alone.V) and app.state.message == alone.message
-
-    tab(work)
+async def test_a_newer_search_takes_the_place_of_an_older_one(app, gate):
+    app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+    await until(lambda: app.state.progress == "start")
+    await change(app, theta=75)
+    gate.set()
+    alone = made(kind="freeform", m=5, n=5, theta=75)
+    await until(lambda: not app.state.searching and app.state.numbers == texts(alone))
+    assert np.array_equal(app.session.V, alone.V) and app.state.message == alone.message
 
 
-def test_a_search_that_fails_is_over_and_says_why(tab, quick):
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        await change(app, kind="cover", source="file")  # none was named
-        await until(lambda: app.state.problem)
-        assert "file" in app.state.problem and not app.state.searching
-
-    tab(work)
+async def test_a_search_that_fails_is_over_and_says_why(app, quick):
+    await arrived(app, "?m=4&n=4")
+    await change(app, kind="cover", source="file")  # none was named
+    await until(lambda: app.state.problem)
+    assert "file" in app.state.problem and not app.state.searching
 
 
-def test_a_search_that_breaks_unexpectedly_is_over_too(tab, quick, monkeypatch, capsys):
+async def test_a_search_that_breaks_unexpectedly_is_over_too(app, quick, monkeypatch, capsys):
     def broken(*_):
         raise RuntimeError("a factor is singular")
 
-    async def work(app):
-        await arrived(app, "?m=4&n=4")
-        monkeypatch.setattr(nets, "find", broken)
-        await change(app, kind="freeform")
-        await until(lambda: app.state.problem)
-        await asyncio.sleep(0.05)
-        assert "singular" in app.state.problem and not app.state.searching
-
-    tab(work)
+    await arrived(app, "?m=4&n=4")
+    monkeypatch.setattr(nets, "find", broken)
+    await change(app, kind="freeform")
+    await until(lambda: app.state.problem)
+    await asyncio.sleep(0.05)
+    assert "singular" in app.state.problem and not app.state.searching
     capsys.readouterr()
 
 
-def test_closing_a_tab_ends_its_search_and_forgets_it(serve, run, gate):
+async def test_closing_a_tab_ends_its_search_and_forgets_it(serve, run, gate):
     from trame.app.core import AVAILABLE_SERVERS
 
-    async def work():
-        async with opened(serve, "closing") as app:
-            app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-            await until(lambda: app.state.progress == "start")
-            search = app.session.run
-            assert not search.stopped and "closing" in AVAILABLE_SERVERS
-        assert search.stopped and "closing" not in AVAILABLE_SERVERS
-        gate.set()
-
-    run(work())
+    async with opened(serve, "closing") as app:
+        app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
+        await until(lambda: app.state.progress == "start")
+        search = app.session.run
+        assert not search.stopped and "closing" in AVAILABLE_SERVERS
+    assert search.stopped and "closing" not in AVAILABLE_SERVERS
+    gate.set()
 
 
-def test_a_closed_tab_leaves_its_scene_to_one_other_tab_which_shows_its_own_net(serve, run):
-    async def work():
-        async with opened(serve, "first") as first:
-            await arrived(first, "?m=4&n=3&families=d1&parallelograms=1", True)
-            left = first.scene
-            first.close()  # and again at the end
-        async with opened(serve, "second") as second, opened(serve, "third") as third:
-            assert second.scene is not third.scene
-            assert left in (second.scene, third.scene)
-            for app, size in ((second, 5), (third, 6)):
-                await arrived(app, f"?m={size}&n=2&families=u,v")
-            for app, size in ((second, 5), (third, 6)):
-                assert np.allclose(app.scene.faces.points, made(m=size, n=2).V, atol=1e-6)
-                assert app.scene.faces.n_cells == 2 * size
-                assert app.scene.curves.n_cells == 3 * size + 2 * (size + 1)
-                assert app.scene.plotter.background_color == look.LIGHT.background
-
-    run(work())
+async def test_a_closed_tab_leaves_its_scene_to_one_other_tab_which_shows_its_own_net(serve, run):
+    async with opened(serve, "first") as first:
+        await arrived(first, "?m=4&n=3&families=d1&parallelograms=1", True)
+        left = first.scene
+        first.close()  # and again at the end
+    async with opened(serve, "second") as second, opened(serve, "third") as third:
+        assert second.scene is not third.scene
+        assert left in (second.scene, third.scene)
+        for app, size in ((second, 5), (third, 6)):
+            await arrived(app, f"?m={size}&n=2&families=u,v")
+        for app, size in ((second, 5), (third, 6)):
+            assert np.allclose(app.scene.faces.points, made(m=size, n=2).V, atol=1e-6)
+            assert app.scene.faces.n_cells == 2 * size
+            assert app.scene.curves.n_cells == 3 * size + 2 * (size + 1)
+            assert app.scene.plotter.background_color == look.LIGHT.background
 
 
 # --- files, given nets --------------------------------------------------------------------
 
 
-def test_a_file_is_covered_in_every_tab_and_named_in_the_code(serve, run, quick, tmp_path):
+async def test_a_file_is_covered_in_every_tab_and_named_in_the_code(serve, run, quick, tmp_path):
     path = tmp_path / "my roof.obj"
     io.write(path, *examples.wavy_roof(12))
-
-    async def work(app):
+    async with opened(serve, "own", surface=io.surface(path), path=path) as app:
         await arrived(app, "?quads=60")
         await until(lambda: app.state.message.startswith("converged"))
         assert (app.state.kind, app.state.source) == ("cover", "file")
         assert str(path) in app.state.code
 
-    async def own():
-        async with opened(serve, "own", surface=io.surface(path), path=path) as app:
-            await work(app)
 
-    run(own())
-
-
-def test_a_given_net_is_shown_and_never_changed(serve, run):
+async def test_a_given_net_is_shown_and_never_changed(serve, run):
     V, Q = surfaces.freeform_patch(5, 4)
-
-    async def work(app):
+    async with opened(serve, "own", net=(V, Q)) as app:
         await arrived(app, "?families=d1,d2&kind=freeform&theta=20")
         theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
         assert float(app.state.numbers["mean_theta"]) == pytest.approx(theta, abs=1e-6)
@@ -502,25 +444,16 @@ def test_a_given_net_is_shown_and_never_changed(serve, run):
         assert np.array_equal(app.session.V, V) and not app.state.searching
         assert not app.state.can_search and list(app.state.families) == ["d1", "d2"]
 
-    async def own():
-        async with opened(serve, "own", net=(V, Q)) as app:
-            await work(app)
-
-    run(own())
-
 
 @pytest.mark.parametrize("suffix", [".obj", ".off", ".svg", ".png"])
-def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page(tab, suffix):
-    async def work(app):
-        await arrived(app, "?kind=isothermal&m=4&n=3&families=d1")
-        away = np.array(SIDE["position"])
-        sight = np.arctan2(away[1], away[0]), np.arcsin(away[2] / np.linalg.norm(away))
-        assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
-        above = {"position": [1, 2, 9.0], "focalPoint": [1, 2, 0]}
-        assert bytes(app.save(suffix, above)) == app.session.save(suffix)
-        assert app.state.alert == ""
-
-    tab(work)
+async def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page(app, suffix):
+    await arrived(app, "?kind=isothermal&m=4&n=3&families=d1")
+    away = np.array(SIDE["position"])
+    sight = np.arctan2(away[1], away[0]), np.arcsin(away[2] / np.linalg.norm(away))
+    assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
+    above = {"position": [1, 2, 9.0], "focalPoint": [1, 2, 0]}
+    assert bytes(app.save(suffix, above)) == app.session.save(suffix)
+    assert app.state.alert == ""
 
 
 BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".stl")] + [
@@ -529,15 +462,12 @@ BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".stl")] +
 ]
 
 
-def test_what_cannot_be_saved_is_a_sentence(tab):
-    async def work(app):
-        await arrived(app, "?m=4&n=3")
-        for suffix, camera in BAD_SAVES:
-            app.state.alert = ""
-            assert app.save(suffix, camera) is None
-            assert app.state.alert.startswith("not saved: ")
-
-    tab(work)
+async def test_what_cannot_be_saved_is_a_sentence(app):
+    await arrived(app, "?m=4&n=3")
+    for suffix, camera in BAD_SAVES:
+        app.state.alert = ""
+        assert app.save(suffix, camera) is None
+        assert app.state.alert.startswith("not saved: ")
 
 
 # --- the scene and its camera -------------------------------------------------------------
@@ -574,40 +504,34 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
 
 @pytest.mark.parametrize("aspect", [0.4, 1.0, 2.5])
 @pytest.mark.parametrize("call", ["fit", "from_above", "from_side"])
-def test_every_view_shows_the_whole_net_and_not_much_else(tab, call, aspect):
-    async def work(app):
-        await arrived(app, "?kind=revolution&m=7&n=5")
-        getattr(app, call)(aspect)
-        camera = app.scene.plotter.camera
-        towards = np.array(camera.position) - camera.focal_point
-        towards /= np.linalg.norm(towards)
-        right = np.cross(camera.up, towards)
-        V = app.session.V - np.array(camera.focal_point)
-        high, wide = np.abs(V @ camera.up).max(), np.abs(V @ right).max()
-        scale = camera.parallel_scale  # half the height of the window
-        assert camera.parallel_projection
-        assert 0.85 < max(high / scale, wide / (scale * aspect)) < 1
-        assert np.all(V @ towards < np.linalg.norm(np.array(camera.position) - camera.focal_point))
-        assert call != "from_above" or np.allclose(towards, [0, 0, 1])
-        assert call == "from_above" or (0 < towards[2] < 0.8 and camera.up[2] > 0.5)
-
-    tab(work)
+async def test_every_view_shows_the_whole_net_and_not_much_else(app, call, aspect):
+    await arrived(app, "?kind=revolution&m=7&n=5")
+    getattr(app, call)(aspect)
+    camera = app.scene.plotter.camera
+    towards = np.array(camera.position) - camera.focal_point
+    towards /= np.linalg.norm(towards)
+    right = np.cross(camera.up, towards)
+    V = app.session.V - np.array(camera.focal_point)
+    high, wide = np.abs(V @ camera.up).max(), np.abs(V @ right).max()
+    scale = camera.parallel_scale  # half the height of the window
+    assert camera.parallel_projection
+    assert 0.85 < max(high / scale, wide / (scale * aspect)) < 1
+    assert np.all(V @ towards < np.linalg.norm(np.array(camera.position) - camera.focal_point))
+    assert call != "from_above" or np.allclose(towards, [0, 0, 1])
+    assert call == "from_above" or (0 < towards[2] < 0.8 and camera.up[2] > 0.5)
 
 
-def test_a_planar_net_is_seen_from_above_and_a_grown_one_is_fitted_again(tab):
-    async def work(app):
-        await arrived(app, "?m=4&n=4&map=identity")
-        camera = app.scene.plotter.camera
-        towards = np.subtract(camera.position, camera.focal_point)
-        assert np.allclose(towards / np.linalg.norm(towards), [0, 0, 1])
-        scale = camera.parallel_scale
-        await change(app, theta=62)
-        await until(lambda: app.state.numbers["theta"] == "62")
-        assert camera.parallel_scale == scale  # a small change does not move the view
-        await change(app, map="exp")
-        await until(lambda: camera.parallel_scale > 1.5 * scale)
-
-    tab(work)
+async def test_a_planar_net_is_seen_from_above_and_a_grown_one_is_fitted_again(app):
+    await arrived(app, "?m=4&n=4&map=identity")
+    camera = app.scene.plotter.camera
+    towards = np.subtract(camera.position, camera.focal_point)
+    assert np.allclose(towards / np.linalg.norm(towards), [0, 0, 1])
+    scale = camera.parallel_scale
+    await change(app, theta=62)
+    await until(lambda: app.state.numbers["theta"] == "62")
+    assert camera.parallel_scale == scale  # a small change does not move the view
+    await change(app, map="exp")
+    await until(lambda: camera.parallel_scale > 1.5 * scale)
 
 
 # --- the door -----------------------------------------------------------------------------
@@ -653,19 +577,17 @@ QUERIES = (
 )
 
 
-def test_the_address_alone_leads_to_the_page_with_its_query(run, house):
-    async def work(door, client):
-        async with client.get("/") as answer:
-            assert answer.status == 200 and answer.url.path == "/index.html"
-            assert answer.content_type == "text/html" and "<html" in (await answer.text()).lower()
-        for pairs in QUERIES:
-            async with client.get(f"/?{urlencode(pairs)}", allow_redirects=False) as answer:
-                assert answer.status == 302
-                there = urlsplit(urljoin(str(answer.url), answer.headers["Location"]))
-            assert (there.netloc, there.path) == (f"{HOST}:{door.port}", "/index.html")
-            assert parse_qsl(there.query, keep_blank_values=True) == pairs
-
-    run(work(*house))
+async def test_the_address_alone_leads_to_the_page_with_its_query(house):
+    door, client = house
+    async with client.get("/") as answer:
+        assert answer.status == 200 and answer.url.path == "/index.html"
+        assert answer.content_type == "text/html" and "<html" in (await answer.text()).lower()
+    for pairs in QUERIES:
+        async with client.get(f"/?{urlencode(pairs)}", allow_redirects=False) as answer:
+            assert answer.status == 302
+            there = urlsplit(urljoin(str(answer.url), answer.headers["Location"]))
+        assert (there.netloc, there.path) == (f"{HOST}:{door.port}", "/index.html")
+        assert parse_qsl(there.query, keep_blank_values=True) == pairs
 
 
 async def linked(client, page):
@@ -681,19 +603,17 @@ async def linked(client, page):
     return text, found
 
 
-def test_all_that_a_page_loads_is_there_for_a_given_net_too(run, house):
-    async def work(door, client):
-        door.nets["abc"] = surfaces.freeform_patch(3, 3)
-        page = await linked(client, "/index.html")
-        assert any(name.endswith(".js") for name in page[1]) and min(map(len, page[1].values())) > 0
-        assert await linked(client, "/net/abc/index.html?families=u") == page
-        async with client.get("/net/abd/index.html") as answer:
-            assert answer.status == 404 and "run the cell" in await answer.text()
-        del door.nets["abc"]
-        async with client.get("/net/abc/index.html") as answer:
-            assert answer.status == 404
-
-    run(work(*house))
+async def test_all_that_a_page_loads_is_there_for_a_given_net_too(house):
+    door, client = house
+    door.nets["abc"] = surfaces.freeform_patch(3, 3)
+    page = await linked(client, "/index.html")
+    assert any(name.endswith(".js") for name in page[1]) and min(map(len, page[1].values())) > 0
+    assert await linked(client, "/net/abc/index.html?families=u") == page
+    async with client.get("/net/abd/index.html") as answer:
+        assert answer.status == 404 and "run the cell" in await answer.text()
+    del door.nets["abc"]
+    async with client.get("/net/abc/index.html") as answer:
+        assert answer.status == 404
 
 
 OTHERS = [
@@ -721,67 +641,49 @@ OURS = [
 ]
 
 
-def test_other_hosts_and_other_sites_are_refused_and_ours_are_not(run, house):
-    async def work(door, client):
-        door.nets["abc"] = surfaces.freeform_patch(3, 3)
-        for target in ("/", "/index.html", "/net/abc/index.html", "/ws", "/net/abc/ws", "/none"):
-            for headers in OTHERS:
-                sent = {k: v.format(port=door.port) for k, v in headers.items()}
-                status, body = await raw(door.port, target, **sent)
-                assert status == 403 and b"<html" not in body, (target, headers)
-        for headers in OURS:
+async def test_other_hosts_and_other_sites_are_refused_and_ours_are_not(house):
+    door, _ = house
+    door.nets["abc"] = surfaces.freeform_patch(3, 3)
+    for target in ("/", "/index.html", "/net/abc/index.html", "/ws", "/net/abc/ws", "/none"):
+        for headers in OTHERS:
             sent = {k: v.format(port=door.port) for k, v in headers.items()}
-            assert (await raw(door.port, "/index.html", **sent))[0] == 200, headers
-
-    run(work(*house))
+            status, body = await raw(door.port, target, **sent)
+            assert status == 403 and b"<html" not in body, (target, headers)
+    for headers in OURS:
+        sent = {k: v.format(port=door.port) for k, v in headers.items()}
+        assert (await raw(door.port, "/index.html", **sent))[0] == 200, headers
 
 
 @pytest.mark.parametrize("name", ["Host", "Origin"])
-def test_a_host_or_a_site_that_cannot_be_read_is_refused_too(run, house, name):
-    async def work(door, client):
-        for value in ("[", "http://[", "[::1", "http://[x]:y", "]"):
-            status, _ = await raw(door.port, "/index.html", **{name: value})
-            assert status in (400, 403), value
-
-    run(work(*house))
+async def test_a_host_or_a_site_that_cannot_be_read_is_refused_too(house, name):
+    door, _ = house
+    for value in ("[", "http://[", "[::1", "http://[x]:y", "]"):
+        status, _ = await raw(door.port, "/index.html", **{name: value})
+        assert status in (400, 403), value
 
 
-def test_behind_the_guard_of_a_hub_other_hosts_are_served(serve, run):
-    async def work(door, client):
-        headers = {"Host": "hub.example", "Origin": "https://hub.example"}
+async def test_behind_the_guard_of_a_hub_other_hosts_are_served(serve, run):
+    headers = {"Host": "hub.example", "Origin": "https://hub.example"}
+    async with visited(serve, guarded=False) as (door, _):
         assert (await raw(door.port, "/index.html", **headers))[0] == 200
 
-    async def own():
-        async with visited(serve, guarded=False) as opening:
-            await work(*opening)
 
-    run(own())
+UPWARDS = "../", "%2e%2e/", "..%2f", "%2e%2e%2f", "..\\", "..%5c", "....//", "%252e%252e/"
 
 
-def test_no_file_but_those_of_the_page_is_read(serve, run, tmp_path):
+async def test_no_file_but_those_of_the_page_is_read(serve, run, tmp_path):
     secret = tmp_path / "secret.obj"
     io.write(secret, *examples.wavy_roof(4))
     content, name = secret.read_bytes(), secret.as_posix().lstrip("/")
-
-    async def work(door, client):
+    async with visited(serve, surface=io.surface(secret), path=secret) as (door, client):
         assert (await raw(door.port, "/index.html"))[0] == 200
         async with client.get("/index.html") as answer:
             script = re.search(r'src="\.?/?([^"]+\.js)"', await answer.text())[1]
         folder = script.rpartition("/")[0]
-        for up in (
-            "../",
-            "%2e%2e/",
-            "..%2f",
-            "%2e%2e%2f",
-            "..\\",
-            "..%5c",
-            "....//",
-            "%252e%252e/",
-        ):
-            for start in ("/", f"/{folder}/", "/index.html/", "/net/abc/"):
-                status, body = await raw(door.port, start + up * 30 + name)
-                assert content[:20] not in body, (start, up)
-                assert status in (400, 403, 404) or (start == "/net/abc/" and status == 302)
+        for up, start in product(UPWARDS, ("/", f"/{folder}/", "/index.html/", "/net/abc/")):
+            status, body = await raw(door.port, start + up * 30 + name)
+            assert content[:20] not in body, (start, up)
+            assert status in (400, 403, 404) or (start == "/net/abc/" and status == 302)
         for target in (
             f"//{name}",
             f"/%2f{name}",
@@ -793,44 +695,34 @@ def test_no_file_but_those_of_the_page_is_read(serve, run, tmp_path):
             status, body = await raw(door.port, target)
             assert status in (400, 403, 404) and content[:20] not in body, target
 
-    async def own():
-        async with visited(serve, surface=io.surface(secret), path=secret) as opening:
-            await work(*opening)
 
-    run(own())
-
-
-def test_only_this_machine_can_connect(run, house):
+async def test_only_this_machine_can_connect(house):
     others = {"127.0.0.2", "::1"}
     others |= {a[4][0] for a in socket.getaddrinfo(socket.gethostname(), None)} - {HOST}
 
-    async def work(door, client):
-        for address in others:
-            with pytest.raises(OSError):
-                await asyncio.open_connection(address, door.port)
-        _, writer = await asyncio.open_connection(HOST, door.port)
-        writer.close()
-        await writer.wait_closed()
-
-    run(work(*house))
-
-
-def test_a_port_that_is_taken_is_an_error_and_a_free_one_is_used(serve, run, house):
-    async def work(door, client):
-        other = serve.Door()
+    door, _ = house
+    for address in others:
         with pytest.raises(OSError):
-            await other.open(door.port)
-        with socket.socket() as found:
-            found.bind((HOST, 0))
-            free = found.getsockname()[1]
-        other = serve.Door()
-        assert await other.open(free) == other.port == free
-        assert (await raw(free, "/index.html"))[0] == 200
-        await other.close()
-        with pytest.raises(OSError):
-            await asyncio.open_connection(HOST, free)
+            await asyncio.open_connection(address, door.port)
+    _, writer = await asyncio.open_connection(HOST, door.port)
+    writer.close()
+    await writer.wait_closed()
 
-    run(work(*house))
+
+async def test_a_port_that_is_taken_is_an_error_and_a_free_one_is_used(serve, house):
+    door, _ = house
+    other = serve.Door()
+    with pytest.raises(OSError):
+        await other.open(door.port)
+    with socket.socket() as found:
+        found.bind((HOST, 0))
+        free = found.getsockname()[1]
+    other = serve.Door()
+    assert await other.open(free) == other.port == free
+    assert (await raw(free, "/index.html"))[0] == 200
+    await other.close()
+    with pytest.raises(OSError):
+        await asyncio.open_connection(HOST, free)
 
 
 def neighbours():
@@ -850,13 +742,13 @@ def neighbours():
 
 
 @pytest.mark.parametrize("free", [True, False])
-def test_without_a_port_the_next_free_one_is_taken(serve, run, monkeypatch, free):
+async def test_without_a_port_the_next_free_one_is_taken(serve, run, monkeypatch, free):
     first, second = neighbours()
     usual = first.getsockname()[1]
     monkeypatch.setattr(serve, "PORT", usual)
     monkeypatch.setattr(serve, "MORE", 2)
 
-    async def work():
+    with first, second:
         if free:
             second.close()
         door = serve.Door()
@@ -867,36 +759,30 @@ def test_without_a_port_the_next_free_one_is_taken(serve, run, monkeypatch, free
         finally:
             await door.close()
 
-    with first, second:
-        run(work())
 
-
-def test_every_connection_has_an_app_of_its_own_that_ends_with_it(serve, run):
+async def test_every_connection_has_an_app_of_its_own_that_ends_with_it(serve, run):
     import aiohttp
     from trame.app.core import AVAILABLE_SERVERS
 
-    async def work():
-        before = set(AVAILABLE_SERVERS)
-        async with visited(serve) as (door, client):
-            door.nets["abc"] = surfaces.freeform_patch(3, 3)
-            sockets = [await client.ws_connect(path) for path in ("/ws", "/ws", "/net/abc/ws")]
-            await until(lambda: len(door.tabs) == 3)
-            apps = [app for app, _ in door.tabs]
-            assert len({id(a.session) for a in apps}) == len({a.server.name for a in apps}) == 3
-            assert sorted(a.session.given for a in apps) == [False, False, True]
-            assert len(set(AVAILABLE_SERVERS) - before) == 3
-            await sockets[0].close()
-            await until(lambda: len(door.tabs) == 2)
-            for path, headers in (("/ws", {"Origin": "http://evil.example"}), ("/net/abd/ws", {})):
-                with pytest.raises(aiohttp.WSServerHandshakeError):
-                    await client.ws_connect(path, headers=headers)
-            await door.close()
-            await until(lambda: not door.tabs and set(AVAILABLE_SERVERS) == before)
-            for one in sockets[1:]:
-                await one.receive()
-                assert one.closed
-
-    run(work())
+    before = set(AVAILABLE_SERVERS)
+    async with visited(serve) as (door, client):
+        door.nets["abc"] = surfaces.freeform_patch(3, 3)
+        sockets = [await client.ws_connect(path) for path in ("/ws", "/ws", "/net/abc/ws")]
+        await until(lambda: len(door.tabs) == 3)
+        apps = [app for app, _ in door.tabs]
+        assert len({id(a.session) for a in apps}) == len({a.server.name for a in apps}) == 3
+        assert sorted(a.session.given for a in apps) == [False, False, True]
+        assert len(set(AVAILABLE_SERVERS) - before) == 3
+        await sockets[0].close()
+        await until(lambda: len(door.tabs) == 2)
+        for path, headers in (("/ws", {"Origin": "http://evil.example"}), ("/net/abd/ws", {})):
+            with pytest.raises(aiohttp.WSServerHandshakeError):
+                await client.ws_connect(path, headers=headers)
+        await door.close()
+        await until(lambda: not door.tabs and set(AVAILABLE_SERVERS) == before)
+        for one in sockets[1:]:
+            await one.receive()
+            assert one.closed
 
 
 TABS = """

@@ -6,7 +6,6 @@ import numpy as np
 import PIL.Image
 import pytest
 from matplotlib import pyplot as plt
-from scipy.spatial import KDTree
 
 from inetlib import measure, plot, publish
 from inetlib.drawings import fig09, lighter
@@ -75,11 +74,6 @@ def test_every_face_has_its_angles_by_the_textbook_formula(glides, panel):
         lengths = np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1)
         found = np.degrees(np.arccos(np.sum(one * two, axis=1) / lengths))
         assert np.abs(found - angle).max() < 1e-9
-
-
-@pytest.mark.parametrize("panel", PANELS)
-def test_the_solver_converged_in_few_steps_without_flips_or_lost_faces(glides, panel):
-    g = glides[panel]
     assert g.result.converged and len(g.result.history) - 1 <= 12
     before, after = (measure.quality(V, g.Q) for V in (g.start, g.result.V))
     assert after.flips == before.flips == 0
@@ -101,14 +95,9 @@ def test_all_vertices_lie_on_the_surface_by_its_closed_form(glides, panel):
     g = glides[panel]
     for V in (g.start, g.result.V):
         assert np.abs(defect(panel[0], back_on_surface(panel, V))).max() < 1e-9
+    assert np.abs(defect(panel[0], 1.01 * back_on_surface(panel, g.start))).max() > 1e-3
     moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
     assert moved > 0.01  # it did glide
-
-
-@pytest.mark.parametrize("letter", "ABCDE")
-def test_the_closed_forms_notice_a_point_beside_the_surface(glides, letter):
-    V = glides[f"{letter}2"].start
-    assert np.abs(defect(letter, 1.01 * V)).max() > 1e-3
 
 
 @pytest.mark.parametrize("panel", PANELS)
@@ -120,29 +109,6 @@ def test_nets_that_go_around_are_closed(glides, panel):
     assert np.count_nonzero(uses == 1) == (2 * 20 if around else 2 * (20 + 8))
     assert g.rows.shape == (9, 20 if around else 21)
     assert len(g.start) == len(g.result.V) == g.rows.size
-
-
-def cloud(V, Q, parts):
-    """Points on two triangles a quad, cut along its shorter diagonal, and their spacing."""
-    i, j = (a.ravel() for a in np.meshgrid(range(parts + 1), range(parts + 1)))
-    inside = i + j <= parts
-    weights = np.stack([i, j, parts - i - j], axis=1)[inside] / parts
-    one, two = (np.linalg.norm(V[Q[:, k + 2]] - V[Q[:, k]], axis=1) for k in (0, 1))
-    turned = np.where((one <= two)[:, None], Q, np.roll(Q, 1, axis=1))
-    triangles = V[np.concatenate([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]])]
-    longest = np.linalg.norm(triangles - np.roll(triangles, 1, axis=1), axis=2).max()
-    return (weights @ triangles).reshape(-1, 3), longest / parts
-
-
-@pytest.mark.parametrize("panel", ["A4", "E4"])
-def test_distances_agree_with_a_cloud_of_points_on_the_faces(glides, panel):
-    g = glides[panel]
-    row = next(r for r in fig09.distances(glides) if r.panel == panel)
-    for V, W, found in ((g.result.V, g.start, row.there), (g.start, g.result.V, row.back)):
-        points, spacing = cloud(W, g.Q, 40)
-        nearest = KDTree(points).query(V)[0].max()
-        assert nearest - spacing < found * g.diagonal < nearest + 1e-12
-        assert spacing < 0.02 * g.diagonal
 
 
 def test_distances_are_fractions_in_both_directions(glides):
@@ -157,9 +123,6 @@ def test_distances_are_fractions_in_both_directions(glides):
         moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
         assert 0 < r.there <= moved and 0 < r.back <= moved
         assert r.off == 0 and r.there < 0.2 and r.back < 0.2
-
-
-# --- the picture --------------------------------------------------------------------------
 
 
 def pixels(figure):

@@ -51,12 +51,8 @@ def test_values_by_hand_for(what):
 
 
 def test_vectors_are_the_diagonals_and_medial_lines():
-    V, Q = HAND["a skew quad"][0]
     wanted = [[1, -1, 0], [2, 1, 1], [1.5, 0, 0.5], [0.5, 1, 0.5]]
-    np.testing.assert_array_equal(np.concatenate(measure.vectors(V, Q)), wanted)
-
-
-# --- random spatial quads, measured by complex numbers ------------------------------------
+    np.testing.assert_array_equal(np.concatenate(measure.vectors(*HAND["a skew quad"][0])), wanted)
 
 
 def random_quads(seed, count=20):
@@ -78,19 +74,15 @@ def random_quads(seed, count=20):
 @given(seeds)
 def test_ratios_and_angles_of_spatial_quads_are_those_of_complex_numbers(seed):
     V, Q, d1, d2 = random_quads(seed)
-    lam, mu = measure.ratios(V, Q)
-    theta, theta0 = measure.angles(V, Q)
-    np.testing.assert_allclose(lam, abs(d2 / d1), rtol=1e-12)
-    np.testing.assert_allclose(mu, abs((d1 + d2) / (d2 - d1)), rtol=1e-12)
-    np.testing.assert_allclose(theta, np.angle(d2 / d1), rtol=1e-12)
-    np.testing.assert_allclose(theta0, np.angle((d2 - d1) / (d1 + d2)), rtol=1e-12)
+    K, R = d2 / d1, (d2 - d1) / (d1 + d2)
+    np.testing.assert_allclose(measure.ratios(V, Q), (abs(K), 1 / abs(R)), rtol=1e-12)
+    np.testing.assert_allclose(measure.angles(V, Q), np.angle([K, R]), rtol=1e-12)
 
 
 @given(seeds)
 def test_measured_ratios_and_angles_satisfy_eq_3_and_eq_4(seed):
     V, Q, *_ = random_quads(seed)
-    lam, mu = measure.ratios(V, Q)
-    theta, theta0 = measure.angles(V, Q)
+    (lam, mu), (theta, theta0) = measure.ratios(V, Q), measure.angles(V, Q)
     cos_theta = (1 + lam**2) * (mu**2 - 1) / (2 * lam * (1 + mu**2))
     cos_theta0 = (1 + mu**2) * (lam**2 - 1) / (2 * mu * (1 + lam**2))
     np.testing.assert_allclose(np.cos(theta), cos_theta, atol=1e-11)
@@ -144,28 +136,15 @@ def test_theta_defect_vanishes_where_theta_is_theta0_and_ignores_scale(theta, sc
     assert measure.theta_defect(V, Q).item() > 1e-3
 
 
-# --- symmetries ---------------------------------------------------------------------------
-
-
 @given(seeds)
-def test_a_quarter_turn_of_the_labels_gives_reciprocals_and_supplements(seed):
+def test_a_quarter_turn_of_the_labels_gives_reciprocals_and_supplements_a_half_turn_nothing(seed):
     V, Q, *_ = random_quads(seed)
+    ratios, angles = np.array(measure.ratios(V, Q)), np.array(measure.angles(V, Q))
     turned = np.roll(Q, 1, axis=1)
-    for a, b in zip(measure.ratios(V, turned), measure.ratios(V, Q), strict=True):
-        np.testing.assert_allclose(a, 1 / b, rtol=1e-13)
-    for a, b in zip(measure.angles(V, turned), measure.angles(V, Q), strict=True):
-        np.testing.assert_allclose(a, np.pi - b, rtol=1e-12)
-
-
-@given(seeds)
-def test_a_half_turn_of_the_labels_changes_nothing(seed):
-    V, Q, *_ = random_quads(seed)
-    for function in (measure.ratios, measure.angles, measure.web_angles):
-        for a, b in zip(function(V, np.roll(Q, 2, axis=1)), function(V, Q), strict=True):
-            np.testing.assert_array_equal(a, b)
-    np.testing.assert_array_equal(
-        measure.theta_defect(V, np.roll(Q, 2, axis=1)), measure.theta_defect(V, Q)
-    )
+    np.testing.assert_allclose(measure.ratios(V, turned), 1 / ratios, rtol=1e-13)
+    np.testing.assert_allclose(measure.angles(V, turned), np.pi - angles, rtol=1e-12)
+    for function in (measure.ratios, measure.angles, measure.web_angles, measure.theta_defect):
+        np.testing.assert_array_equal(function(V, np.roll(Q, 2, axis=1)), function(V, Q))
 
 
 @given(seeds)
@@ -195,19 +174,10 @@ def test_moving_turning_and_scaling_a_net_changes_no_ratio_and_no_angle(seed, sc
     rng = np.random.default_rng(seed)
     moved = scale * (Rotation.from_quat(rng.normal(size=4)).apply(V) + rng.normal(size=3))
     for function in (measure.ratios, measure.angles, measure.web_angles):
-        for a, b in zip(function(moved, Q), function(V, Q), strict=True):
-            np.testing.assert_allclose(a, b, rtol=1e-11)
+        np.testing.assert_allclose(function(moved, Q), function(V, Q), rtol=1e-11)
     np.testing.assert_allclose(
         measure.theta_defect(moved, Q), measure.theta_defect(V, Q), atol=1e-12
     )
-
-
-def test_the_measure_leaves_its_arguments_alone():
-    V, Q, *_ = random_quads(0)
-    before = V.copy(), Q.copy()
-    measure.ratios(V, Q), measure.angles(V, Q), measure.web_angles(V, Q), measure.quality(V, Q)
-    np.testing.assert_array_equal(V, before[0])
-    np.testing.assert_array_equal(Q, before[1])
 
 
 def test_small_angles_keep_their_digits():
@@ -222,35 +192,22 @@ def test_small_angles_keep_their_digits():
     assert theta0.item() == pytest.approx(float(wanted0), rel=1e-14)
 
 
-# --- whole meshes -------------------------------------------------------------------------
-
-
 def sheared(m, n, u=(1.0, 0, 0), v=(0.3, 0.8, 0)):
     i, j = np.divmod(np.arange((m + 1) * (n + 1)), n + 1)
     return i[:, None] * np.array(u) + j[:, None] * np.array(v), mesh.grid_quads(m, n)
 
 
-def test_a_million_quads_are_measured_face_by_face():
-    V, Q = sheared(1000, 1000, v=(0, 2.0, 0))  # d1 = (1, -2), d2 = (1, 2)
-    V[0] += [-0.5, 0, 0.25]
-    lam, mu = measure.ratios(V, Q)
-    theta, theta0 = measure.angles(V, Q)
-    assert [x.shape for x in (lam, mu, theta, theta0)] == [(1_000_000,)] * 4
-    np.testing.assert_allclose(lam[1:], 1, rtol=1e-12)
-    np.testing.assert_allclose(mu[1:], 1 / 2, rtol=1e-12)
-    np.testing.assert_allclose(theta[1:], 2 * np.arctan(2), rtol=1e-12)
-    np.testing.assert_allclose(theta0[1:], np.pi / 2, rtol=1e-12)
-    assert lam[0] == pytest.approx((1.5**2 + 4 + 0.25**2) ** 0.5 / 5**0.5)
-
-
 def test_a_grid_of_congruent_cells_has_one_value_in_every_face():
     V, Q = sheared(4, 3)
-    theta, theta0 = measure.angles(V, Q)
+    V[0, 2] = 1  # but the first
+    theta, theta0 = (angle[1:] for angle in measure.angles(V, Q))
     np.testing.assert_allclose(theta0, np.arctan2(0.8, 0.3), rtol=1e-13)
     np.testing.assert_allclose(theta, np.arctan2(0.8, 0.7) + np.arctan2(0.8, 1.3), rtol=1e-13)
+    off = measure.deviations(V, Q, theta0=theta0[0])
+    np.testing.assert_allclose(off[1, 1:], 0, atol=1e-13)
+    found = measure.angles(V, Q)
+    np.testing.assert_allclose(off[0], abs(found[0] - found[0].mean()), atol=1e-13)
 
-
-# --- errors -------------------------------------------------------------------------------
 
 COLLAPSED = {
     "first diagonal": (quad((1, 1), (0, 0), (1, 1), (2, 5)), "a diagonal of length zero"),
@@ -260,7 +217,7 @@ COLLAPSED = {
 }
 
 
-@pytest.mark.parametrize("name", ["ratios", "angles", "web_angles"])
+@pytest.mark.parametrize("name", ["ratios", "angles", "web_angles", "theta_defect", "quality"])
 @pytest.mark.parametrize("what", COLLAPSED)
 def test_a_collapsed_face_is_named_for_its(what, name):
     (V, Q), words = COLLAPSED[what]
@@ -268,11 +225,6 @@ def test_a_collapsed_face_is_named_for_its(what, name):
     V, Q = np.concatenate([good[0], V]), np.concatenate([good[1], Q + 4])
     with pytest.raises(ValueError, match=f"face 1 has {words}"):
         getattr(measure, name)(V, Q)
-
-
-def test_theta_defect_refuses_a_collapsed_diagonal():
-    with pytest.raises(ValueError, match="face 0 has a diagonal of length zero"):
-        measure.theta_defect(*COLLAPSED["first diagonal"][0])
 
 
 def test_quality_refuses_a_face_without_area():
@@ -295,32 +247,20 @@ def test_bad_meshes_are_refused_before_anything_is_measured(function):
         function(V, Q)
 
 
-# --- spread -------------------------------------------------------------------------------
-
-
 def test_spread_by_hand_about_the_mean_and_about_a_target():
     assert measure.spread([1, 2, 6]) == pytest.approx((3, 1, 6, 3, 2))
     assert measure.spread([1, 2, 6], target=2) == pytest.approx((3, 1, 6, 4, 5 / 3))
     assert measure.spread(np.full((2, 2), 7.0)) == (7, 7, 7, 0, 0)
+    assert measure.spread([1.0, 2.0], np.array([1.5, 2.0])).max_deviation == 0.5
     assert all(type(x) is float for x in measure.spread([1, 2, 6]))
 
 
-def test_spread_from_a_target_face_by_face():
-    assert measure.spread([1.0, 2.0], np.array([1.5, 2.0])).max_deviation == 0.5
-
-
 @pytest.mark.parametrize("bad", [[], [1, np.nan], [np.inf]])
-def test_spread_refuses_what_has_no_mean(bad):
+def test_spread_refuses_what_has_no_mean_and_no_target(bad):
     with pytest.raises(ValueError, match="at least one value, all of them finite"):
         measure.spread(bad)
-
-
-def test_spread_refuses_a_target_that_is_no_number():
     with pytest.raises(ValueError, match="target = nan"):
         measure.spread([1.0], target=np.nan)
-
-
-# --- quality ------------------------------------------------------------------------------
 
 
 def test_quality_of_unit_squares():
@@ -350,23 +290,18 @@ def test_one_folded_face_is_found_and_no_other(cell):
         assert (found.flips, found.flipped.tolist()) == (1, [4 * i + j])
 
 
-def test_two_folded_faces_far_apart_are_both_found():
+def test_two_folded_faces_far_apart_are_both_found_and_none_on_a_torus():
     V, Q = sheared(6, 6, v=(0, 1, 0))
     for i, j in [(1, 1), (4, 3)]:
         V[(i + 1) * 7 + j + 1] = [i - 0.2, j - 0.2, 0]
     found = measure.quality(V, Q)
     assert (found.flips, found.flipped.tolist()) == (2, [1 * 6 + 1, 4 * 6 + 3])
-
-
-def test_a_closed_round_surface_has_no_flips():
-    m, n = 12, 9
-    i, j = np.divmod(np.arange(m * n), n)
-    u, v = 2 * np.pi * i / m, 2 * np.pi * j / n
-    r = 3 + np.cos(v)
-    V = np.stack([r * np.cos(u), r * np.sin(u), np.sin(v)], axis=1)
-    at = lambda a, b: (i + a) % m * n + (j + b) % n  # noqa: E731
-    Q = np.stack([at(0, 1), at(0, 0), at(1, 0), at(1, 1)], axis=1)
-    assert measure.quality(V, Q).flips == 0
+    np.testing.assert_array_equal(measure.flipped(V, Q), found.flipped)
+    i, j = np.divmod(np.arange(12 * 9), 9)
+    u, v = 2 * np.pi * i / 12, 2 * np.pi * j / 9
+    V = np.stack([(3 + np.cos(v)) * np.cos(u), (3 + np.cos(v)) * np.sin(u), np.sin(v)], axis=1)
+    i, j = np.divmod(mesh.grid_quads(12, 9), 10)
+    assert measure.quality(V, i % 12 * 9 + j % 9).flips == 0
 
 
 def test_planarity_is_the_distance_of_the_diagonals_over_their_mean_length():
@@ -388,17 +323,6 @@ def test_area_ratio_and_aspect_are_those_of_the_worst_face():
     assert tall.aspect == pytest.approx(4)
 
 
-# --- hausdorff ----------------------------------------------------------------------------
-
-
-def sphere(radius, m=24, n=15):
-    """Quads on a sphere between two parallels, vertices at the radius."""
-    i, j = np.divmod(np.arange((m + 1) * (n + 1)), n + 1)
-    u, v = 2 * np.pi * i / m, -1.2 + 2.4 * j / n
-    points = np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], axis=1)
-    return radius * points, mesh.grid_quads(m, n)
-
-
 def test_parallel_plane_pieces_are_as_far_apart_as_they_are():
     V, Q = sheared(5, 4)
     turn = Rotation.from_rotvec([0.3, 1.1, -2])
@@ -416,15 +340,6 @@ def test_a_part_lies_on_the_whole_but_not_the_whole_on_the_part():
     assert there == pytest.approx(0, abs=1e-15)
     assert back == pytest.approx(np.hypot(6 - 2.1, 6 - 3), rel=1e-14)
     assert measure.hausdorff(V, Q, W, R) == (back, there)
-
-
-@pytest.mark.parametrize("refine", [1, 3])
-def test_concentric_spheres_are_apart_by_the_difference_of_their_radii(refine):
-    (V, Q), (W, R) = sphere(1), sphere(1.3, 40, 25)
-    there, back = measure.hausdorff(V, Q, W, R, refine)
-    sagitta = 1.3 * (1 - np.cos(2 * np.pi / 40))
-    assert 0.3 - 2 * sagitta < there < 0.3 + 2 * sagitta
-    assert 0.3 - 1e-12 <= back < 0.3 + 2 * (1 - np.cos(2 * np.pi / 24))
 
 
 def test_refining_finds_the_ground_below_a_roof():
@@ -445,10 +360,8 @@ def test_triangles_are_welcome_and_unused_vertices_do_not_count():
     assert measure.hausdorff(far, F, above, Q, 2) == pytest.approx((2, 2), rel=1e-14)
 
 
-def test_hausdorff_refuses_bad_input():
+@pytest.mark.parametrize("bad", [0, 1.5, np.nan])
+def test_hausdorff_refuses_to_refine_by(bad):
     V, Q = sheared(2, 2)
-    for bad in (0, 1.5, np.nan):
-        with pytest.raises(ValueError, match=f"refine = {bad}: a whole number"):
-            measure.hausdorff(V, Q, V, Q, bad)
-    with pytest.raises(ValueError, match="only 8 vertices"):
-        measure.hausdorff(V, Q, V[:-1], Q)
+    with pytest.raises(ValueError, match=f"refine = {bad}: a whole number"):
+        measure.hausdorff(V, Q, V, Q, bad)

@@ -1,13 +1,14 @@
 """PAPER.md, ERRATA.md, the docstrings, the tests and the notebooks' headings agree."""
 
 import ast
+import functools
 import inspect
 import re
 from pathlib import Path
 
 import nbformat
 import pytest
-from test_project import public_functions
+from test_project import public
 
 ROOT = Path(__file__).resolve().parent.parent
 ITEM = re.compile(
@@ -25,6 +26,7 @@ EVERYTHING = (
 BEYOND = [f"B{k}" for k in range(1, 11)]
 
 
+@functools.cache
 def rows(part=0):
     """A table of PAPER.md, of the paper (0) or beyond it (1): {item: (functions, tests, page)}."""
     text = (ROOT / "PAPER.md").read_text(encoding="utf-8").split("\n## Beyond the paper\n")[part]
@@ -42,12 +44,14 @@ def rows(part=0):
     return table
 
 
+@functools.cache
 def headings(notebook):
     cells = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
     lines = [line for c in cells if c.cell_type == "markdown" for line in c.source.splitlines()]
     return " ".join(line for line in lines if line.startswith("#"))
 
 
+@functools.cache
 def names_in(path):
     tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
     return {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
@@ -59,6 +63,12 @@ def cited(doc):
     return set(ITEM.findall(last)), set(re.findall(r"\bB\d+\b", last))
 
 
+@functools.cache
+def citations(part):
+    """{"room.name": the items that the docstring cites, of the paper (0) or beyond it (1)}."""
+    return {name: cited(inspect.getdoc(value))[part] for name, value in public().items()}
+
+
 def test_every_numbered_item_stands_exactly_once():
     assert sorted(rows()) == sorted(EVERYTHING)
     assert list(rows(1)) == BEYOND
@@ -67,10 +77,9 @@ def test_every_numbered_item_stands_exactly_once():
 @pytest.mark.parametrize(("part", "item"), [(k, item) for k in (0, 1) for item in rows(k)])
 def test_a_row_names_a_function_a_test_and_a_heading_that_exist(part, item):
     functions, tests, notebook = rows(part)[item]
-    docs = {name: inspect.getdoc(value) for name, value in public_functions()}
     assert functions and tests
     for name in functions:
-        assert item in cited(docs[name])[part], f"{name} does not cite {item}"
+        assert item in citations(part)[name], f"{name} does not cite {item}"
     for name in tests:
         path, _, test = name.partition("::")
         assert test in names_in(f"tests/{path}"), name
@@ -83,10 +92,9 @@ def test_a_row_names_a_function_a_test_and_a_heading_that_exist(part, item):
 
 def test_every_docstring_that_cites_an_item_stands_in_its_row():
     for part in (0, 1):
-        table = rows(part)
-        for name, value in public_functions():
-            for item in cited(inspect.getdoc(value))[part]:
-                assert name in table[item][0], f"the row of {item} lacks {name}"
+        for name, items in citations(part).items():
+            for item in items:
+                assert name in rows(part)[item][0], f"the row of {item} lacks {name}"
 
 
 def test_every_erratum_has_a_test_and_each_number_is_accounted_for():

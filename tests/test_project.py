@@ -1,5 +1,7 @@
 """The project's own promises: declared packages, pins, style, nothing private in a file."""
 
+import ast
+import doctest
 import functools
 import importlib
 import inspect
@@ -7,6 +9,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -20,6 +23,9 @@ MODULES = sorted(
     for path in (ROOT / "inetlib").glob("**/*.py")
     if path.parent.name != "inetlib" or path.stem != "__init__"
 )
+
+
+PICTURES = {"drawings", "explorer", "plot", "publish", "same", "view"}  # not the library proper
 
 
 def tracked():
@@ -37,21 +43,40 @@ def declared():
 
 
 @functools.cache
-def public_functions():
-    return list(_public_functions())
+def public():
+    """{"room.name": function or class} of all that a room has of its own, without underscore."""
+    return {
+        f"{name}.{key}": value
+        for name in MODULES
+        for key, value in vars(importlib.import_module(f"inetlib.{name}")).items()
+        if getattr(value, "__module__", "") == f"inetlib.{name}"
+        and not key.startswith("_")
+        and (inspect.isroutine(value) or inspect.isclass(value))
+    }
 
 
-def _public_functions():
-    for name in MODULES:
-        module = importlib.import_module(f"inetlib.{name}")
-        for key, value in vars(module).items():
-            own = getattr(value, "__module__", "") == module.__name__
-            if (
-                own
-                and not key.startswith("_")
-                and (inspect.isroutine(value) or inspect.isclass(value))
-            ):
-                yield f"{name}.{key}", value
+@functools.cache
+def imports():
+    """{room: [(room it imports, name it takes from there or None)]}, in functions too."""
+    found, rooms = {}, {"inetlib", *(f"inetlib.{name}" for name in MODULES)}
+    for path in (ROOT / "inetlib").rglob("*.py"):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        package = parts[:-1]
+        here = ".".join(package if path.stem == "__init__" else parts)
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+        pairs, known = [], {}
+        for node in (n for n in nodes if isinstance(n, ast.ImportFrom)):
+            base = package[: len(package) + 1 - node.level] if node.level else ()
+            source = ".".join([*base, *(node.module or "").split(".")]).strip(".")
+            for alias in node.names:
+                inner = f"{source}.{alias.name}"
+                pairs.append((inner, None) if inner in rooms else (source, alias.name))
+                known[alias.asname or alias.name] = inner
+        for node in (n for n in nodes if isinstance(n, ast.Attribute)):
+            if isinstance(node.value, ast.Name) and node.value.id in known:
+                pairs.append((known[node.value.id], node.attr))
+        found[here] = [pair for pair in pairs if pair[0] in rooms]
+    return found
 
 
 def test_environment_yml_is_made_from_pyproject():
@@ -120,12 +145,17 @@ def test_the_package_list_names_every_module_folder():
     assert {str(f).replace("/", ".").replace("\\", ".") for f in folders} == set(packages)
 
 
-@pytest.mark.parametrize("command", [["format", "--check"], ["check"]])
-def test_ruff_has_nothing_to_say(command):
-    done = subprocess.run(
-        [sys.executable, "-m", "ruff", *command, "."], cwd=ROOT, capture_output=True, text=True
-    )
+@pytest.mark.parametrize("command", ["ruff format --check .", "ruff check .", "mypy"])
+def test_what_reads_the_code_has_nothing_to_say(command):
+    words = [sys.executable, "-m", *command.split()]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_examples_in_docstrings_come_out_as_they_stand():
+    found = [doctest.testmod(importlib.import_module(f"inetlib.{name}")) for name in MODULES]
+    assert sum(result.attempted for result in found) > 5
+    assert not any(result.failed for result in found)
 
 
 def test_no_file_names_a_package_index_or_somebodys_machine():
@@ -147,22 +177,46 @@ def test_identifiers_are_ascii():
 
 
 def test_every_public_name_has_a_docstring():
-    names = public_functions()
-    assert len(names) > 40
-    for name, value in names:
-        doc = inspect.getdoc(value)
-        assert doc, name
+    assert len(public()) > 40
+    for name, value in public().items():
+        assert inspect.getdoc(value), name
 
 
-def test_no_module_and_no_function_outgrows_a_glance():
-    for name, value in public_functions():
-        methods = vars(value).values() if inspect.isclass(value) else [value]
-        for function in filter(inspect.isfunction, methods):
-            if not function.__code__.co_filename.startswith(str(ROOT)):
-                continue  # made by dataclasses
-            assert len(inspect.getsource(function).splitlines()) <= 60, (name, function)
+def test_every_function_of_the_library_says_the_types_of_what_it_takes_and_gives():
+    for name, value in public().items():
+        if inspect.isfunction(value) and name.partition(".")[0] not in PICTURES:
+            signature = inspect.signature(value)
+            bare = [p.name for p in signature.parameters.values() if p.annotation is p.empty]
+            assert not bare, f"{name}: {', '.join(bare)}"
+            assert signature.return_annotation is not signature.empty, name
+
+
+def test_the_rooms_import_each_other_in_one_direction():
+    graph = {here: {there for there, _ in pairs} for here, pairs in imports().items()}
+    assert len(graph) > 20 and "inetlib.mesh" in graph["inetlib.measure"]
+    try:
+        list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" imports ".join(reversed(error.args[1])))
+
+
+def test_no_room_takes_a_private_name_of_another():
+    for here, pairs in imports().items():
+        for there, name in pairs:
+            words = [*there.split("."), name or ""]
+            hidden = [w for w in words if w.startswith("_") and not w.endswith("__")]
+            assert not hidden, f"{here}: {there}.{name}"
+
+
+def test_no_room_and_no_function_outgrows_a_glance():
     for path in (ROOT / "inetlib").rglob("*.py"):
-        assert len(path.read_text(encoding="utf-8").splitlines()) <= 600, path
+        text = path.read_text(encoding="utf-8")
+        assert len(text.splitlines()) <= 600, path
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                body = node.body[1:] if ast.get_docstring(node) else node.body
+                lines = body[-1].end_lineno - body[0].lineno + 1 if body else 0
+                assert lines <= 50, (path.name, node.name, lines)
 
 
 def test_the_library_draws_without_opengl():

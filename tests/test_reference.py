@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 from scipy.spatial.transform import Rotation
 
 from inetlib import mesh as quads
@@ -32,9 +32,6 @@ def dot(a, b):
     return np.einsum("ij,ij->i", a, b)
 
 
-# --- meshes to test on --------------------------------------------------------------------
-
-
 def grid(m, n, height=None):
     """A grid of quads over the unit square, as it is or with z = height(x, y)."""
     x, y = np.meshgrid(np.linspace(0, 1, m + 1), np.linspace(0, 1, n + 1), indexing="ij")
@@ -46,23 +43,14 @@ def wavy(x, y):
     return 0.2 * np.sin(4 * x) * np.cos(3 * y) + 0.1 * x
 
 
-def octahedron(splits):
-    """A triangulated unit sphere, outward normals, from an octahedron."""
-    V = np.concatenate([np.eye(3), -np.eye(3)])
-    F = np.array(
-        [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
-    )
-    for _ in range(splits):
-        a, b, c = V[F].transpose(1, 0, 2)
-        V = np.concatenate([a, b, c, a + b, b + c, c + a])
-        V /= norm(V)
-        a, b, c, ab, bc, ca = np.arange(6 * len(F)).reshape(6, -1)
-        F = np.concatenate(
-            [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-        )
-        _, keep, where = np.unique(np.round(V, 9), axis=0, return_index=True, return_inverse=True)
-        V, F = V[keep], where.ravel()[F]
-    return V, F
+def ball(count):
+    """A unit sphere of triangles between points on a spiral, outward normals."""
+    k = np.arange(count) + 0.5
+    z, angle = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
+    V = np.stack([np.sqrt(1 - z**2) * np.cos(angle), np.sqrt(1 - z**2) * np.sin(angle), z], axis=1)
+    F = ConvexHull(V).simplices.astype(np.int64)
+    inward = np.linalg.det(V[F]) < 0
+    return V, np.where(inward[:, None], F[:, ::-1], F)
 
 
 def tube(m, n):
@@ -77,9 +65,6 @@ def fine_points(V, F, parts=40):
     i, j = np.divmod(np.arange((parts + 1) ** 2), parts + 1)
     weights = np.stack([parts - i - j, i, j], axis=1)[i + j <= parts] / parts
     return (weights @ V[F]).reshape(-1, 3)
-
-
-# --- closest points on meshes -------------------------------------------------------------
 
 
 def test_feet_and_normals_of_a_tilted_square_are_those_of_the_plane():
@@ -116,8 +101,7 @@ def test_a_point_of_the_mesh_is_its_own_foot():
 
 
 def test_a_fine_sphere_has_feet_and_normals_along_the_radius():
-    V, F = octahedron(4)
-    assert len(F) == 2048
+    V, F = ball(1000)
     d = directions(500)
     feet, normals = reference.mesh(V, F).closest(1.3 * d)
     edge = np.linalg.norm(V[F[:, 0]] - V[F[:, 1]], axis=1).max()
@@ -142,17 +126,14 @@ def test_normals_have_no_jump_across_edges_and_turn_with_the_surface():
 def test_a_normal_that_cancels_is_replaced_by_that_of_the_face():
     """Two leaves folded together: at the common edge the vertex normals are zero."""
     V = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [1, 0.5, 0.0]])
-    feet, normals = reference.mesh(V, [[1, 0, 2], [0, 1, 3]]).closest([[-1, 0.5, 0.3]])
+    R = reference.mesh(V, [[1, 0, 2], [0, 1, 3]])
+    feet, normals = R.closest([[-1, 0.5, 0.3]])
     np.testing.assert_allclose(feet, [[0, 0.5, 0]], atol=1e-15)
     np.testing.assert_allclose(np.abs(normals), [[0, 0, 1]], atol=1e-15)
-
-
-def test_a_quad_is_cut_along_its_shorter_diagonal():
-    V = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0], [3, 3, 1.0]])  # v1 v3 is shorter
-    for shift in range(4):
-        R = reference.mesh(np.roll(V, shift, axis=0), [[0, 1, 2, 3]])
-        middle = [[0.5, 0.5, 0]]
-        np.testing.assert_allclose(R.closest(middle)[0], middle, atol=1e-15)
+    feet, *frame = R.boundary([[0, -0.2, 0], [1, 0, 1]])
+    np.testing.assert_allclose(feet[0], [0, 0, 0], atol=1e-15)
+    np.testing.assert_allclose(np.abs(frame[2]), [[0, 0, 1]] * 2, atol=1e-12)
+    assert_frame(*frame)
 
 
 def test_turning_and_scaling_the_mesh_turns_and_scales_the_answers():
@@ -169,22 +150,14 @@ def test_turning_and_scaling_the_mesh_turns_and_scales_the_answers():
             np.testing.assert_allclose(b[single], TURN.apply(a)[single], atol=1e-9)
 
 
-def test_later_changes_of_the_vertices_do_not_move_the_reference():
-    V, Q = grid(2, 2)
-    R = reference.mesh(V, Q)
-    V += 7
-    np.testing.assert_allclose(R.closest([[0.3, 0.4, 1]])[0], [[0.3, 0.4, 0]], atol=1e-15)
-
-
-def test_vertices_of_no_face_play_no_part():
+def test_later_changes_of_the_vertices_and_vertices_of_no_face_play_no_part():
     V, Q = grid(2, 2)
     V = np.concatenate([V, [[100.0, 0, 0]]])
     R = reference.mesh(V, Q)
+    V += 7
     assert R.diagonal == pytest.approx(2**0.5)
-    np.testing.assert_allclose(R.closest([[50, 0.5, 0]])[0], [[1, 0.5, 0]])
-
-
-# --- boundaries ---------------------------------------------------------------------------
+    feet, _ = R.closest([[0.3, 0.4, 1], [50, 0.5, 0]])
+    np.testing.assert_allclose(feet, [[0.3, 0.4, 0], [1, 0.5, 0]], atol=1e-15)
 
 
 def assert_frame(e1, e2, e3):
@@ -301,77 +274,38 @@ def test_holes_are_boundary_too():
 
 
 def test_no_boundary_is_an_error_that_says_so():
-    with pytest.raises(ValueError, match="closed surface: it has no boundary"):
-        reference.mesh(*octahedron(0)).boundary(np.zeros((1, 3)))
-    with pytest.raises(ValueError, match="a parametric reference knows no boundary"):
-        reference.parametric(SPHERE.point, (0, TAU), (-1, 1)).boundary(np.zeros((1, 3)))
-
-
-def test_a_reference_says_whether_it_has_a_boundary():
     assert reference.mesh(*grid(2, 2)).has_boundary
-    assert not reference.mesh(*octahedron(0)).has_boundary
-    assert not reference.parametric(SPHERE.point, (0, TAU), (-1, 1)).has_boundary
-
-
-def test_a_boundary_normal_that_cancels_is_replaced_by_that_of_the_face():
-    """Two leaves folded together along an edge that ends on the boundary."""
-    V = np.array([[0, 0, 0], [0, 1, 0], [1, 0.5, 0], [1, 0.5, 0.0]])
-    feet, *frame = reference.mesh(V, [[1, 0, 2], [0, 1, 3]]).boundary([[0, -0.2, 0], [1, 0, 1]])
-    np.testing.assert_allclose(feet[0], [0, 0, 0], atol=1e-15)
-    np.testing.assert_allclose(np.abs(frame[2]), [[0, 0, 1]] * 2, atol=1e-12)
-    assert_frame(*frame)
-
-
-# --- what is refused ----------------------------------------------------------------------
+    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
+    for R in (reference.mesh(*ball(20)), sphere):
+        assert not R.has_boundary
+        with pytest.raises(ValueError, match=r"no boundary: it is closed, or no `reference\.mesh`"):
+            R.boundary(np.zeros((1, 3)))
 
 
 def test_bad_meshes_are_refused():
     V, Q = grid(2, 2)
     cases = [
         (V, np.zeros((0, 3), dtype=int), "no faces"),
-        (V, np.arange(5)[None], r"shape \(1, 5\): rows of three or four"),
-        (V, Q[:, :3] + 9, "only 9 vertices"),
-        (V[:, :2], Q, r"V has the shape \(9, 2\)"),
-        (np.where(np.arange(9)[:, None] == 4, np.nan, V), Q, "vertex 4 .* not a finite"),
-        (V, Q * 1.0, "integers are wanted"),
         (V, np.concatenate([Q[:3], Q[3:, ::-1]]), "oriented against each other"),
-        (V, np.concatenate([Q, Q[:1]]), "more than two faces"),
         (V, [[0, 1, 4], [1, 0, 3], [3, 0, 1]], "more than two faces"),
+        (V, [[0, 1, 4], [0, 3, 6]], r"triangle \[0, 3, 6\] near .* has no area"),
+        (V, [[4, 0, 1], [4, 8, 7]], "vertex 4, near .*, form two fans"),
     ]
     for vertices, faces, words in cases:
         with pytest.raises(ValueError, match=words):
             reference.mesh(vertices, faces)
 
 
-def test_a_face_without_area_is_named():
-    V, Q = grid(3, 1)
-    with pytest.raises(ValueError, match="face 1 has no area: the triangle"):
-        reference.mesh(V, [[0, 2, 1], [2, 4, 6]])
-    V[5] = V[3]
-    with pytest.raises(ValueError, match="face 1 has no area: its triangle"):
-        reference.mesh(V, Q)
-
-
-def test_surfaces_that_share_only_a_vertex_are_refused():
-    V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0.0]])
-    with pytest.raises(ValueError, match="faces at vertex 0 form two fans"):
-        reference.mesh(V, [[0, 1, 2], [0, 3, 4]])
-
-
 @pytest.mark.parametrize("ask", ["closest", "boundary"])
-def test_bad_points_are_refused(ask):
-    R = reference.mesh(*grid(2, 2))
+def test_bad_points_are_refused_and_no_points_have_no_feet(ask):
+    answer = getattr(reference.mesh(*grid(2, 2)), ask)
     with pytest.raises(ValueError, match=r"points have the shape \(3,\)"):
-        getattr(R, ask)(np.zeros(3))
+        answer(np.zeros(3))
     with pytest.raises(ValueError, match="point 1 has a coordinate that is not a finite"):
-        getattr(R, ask)([[0, 0, 0], [0, np.nan, 0]])
-
-
-def test_no_points_have_no_feet():
-    for R in (reference.mesh(*grid(2, 2)), reference.parametric(SPHERE.point, (0, TAU), (-1, 1))):
-        assert [x.shape for x in R.closest(np.zeros((0, 3)))] == [(0, 3)] * 2
-    R = reference.mesh(*grid(2, 2))
-    assert [x.shape for x in R.boundary(np.zeros((0, 3)))] == [(0, 3)] * 4
+        answer([[0, 0, 0], [0, np.nan, 0]])
+    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
+    for X in (*answer(np.zeros((0, 3))), *sphere.closest(np.zeros((0, 3)))):
+        assert X.shape == (0, 3)
 
 
 def test_bad_surfaces_are_refused():
@@ -386,9 +320,6 @@ def test_bad_surfaces_are_refused():
     for point, u, v, words in cases:
         with pytest.raises(ValueError, match=words):
             reference.parametric(point, u, v)
-
-
-# --- analytic surfaces --------------------------------------------------------------------
 
 
 def sphere_tangents(u, v):
@@ -457,11 +388,11 @@ def test_a_surface_that_is_not_finite_beyond_its_domain_ends_there():
     feet, normals = R.closest(P)
     assert feet[:, :2].min() == 0
     assert feet[:, :2].max() == 1
-    many = saddle(*np.meshgrid(np.linspace(0, 1, 1001), np.linspace(0, 1, 1001))).reshape(-1, 3)
+    many = saddle(*np.meshgrid(np.linspace(0, 1, 501), np.linspace(0, 1, 501))).reshape(-1, 3)
     near, _ = cKDTree(many).query(P)
     far = norm(P - feet)[:, 0]
     assert (far <= near + 1e-12).all()
-    assert (near - far).max() < 1e-3
+    assert (near - far).max() < 2e-3
     inner = (feet[:, :2] > 0).all(axis=1) & (feet[:, :2] < 1).all(axis=1)
     assert inner.sum() > 100
     assert norm(np.cross(P - feet, normals))[inner].max() < 1e-6  # rougher near the edge

@@ -32,7 +32,7 @@ def pyvista():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of other people's packages
         try:
-            return view._pyvista()
+            return view.pyvista_module()
         except ImportError as error:
             pytest.skip(str(error))
 
@@ -118,7 +118,7 @@ def test_egl_is_asked_for_on_linux_without_a_display(monkeypatch, platform, disp
         monkeypatch.setenv(key, value or "")  # so that monkeypatch restores it
         if value is None:
             monkeypatch.delenv(key)
-    view._pyvista()
+    view.pyvista_module()
     assert os.environ.get(name) == after
 
 
@@ -138,7 +138,7 @@ def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
     still = np.full((view.SIZE[1], view.SIZE[0], 3), 77, dtype=np.uint8)
     monkeypatch.setattr(view, "picture", lambda *_: still)
     monkeypatch.setattr(view, "available", lambda: (True, ""))
-    monkeypatch.setattr(view, "_headless", lambda: not display)
+    monkeypatch.setattr(view, "headless", lambda: not display)
     door = types.SimpleNamespace(port=1, nets={})
     monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
     monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
@@ -147,15 +147,15 @@ def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     if not kernel:
         monkeypatch.delitem(sys.modules, "ipykernel")
-    result = view.show(V, Q)
-    assert live == (
-        "window"
-        if result == "window"
-        else {explorer.notebook.Live: "page"}.get(type(result), "still")
-    )
-    forced = view.show(V, Q, live=True)
-    assert isinstance(forced, explorer.notebook.Live) if kernel else forced == "window"
+    result = explorer.turn(V, Q) if kernel else view.show(V, Q)
+    kinds = {str: "window", explorer.notebook.Live: "page"}
+    assert live == kinds.get(type(result), "still")
     fixed = view.show(V, Q, live=False)
+    if kernel:
+        assert isinstance(explorer.turn(V, Q, live=True), explorer.notebook.Live)
+        assert explorer.turn(V, Q, live=False).data == fixed.data == view.show(V, Q).data
+    else:
+        assert view.show(V, Q, live=True) == "window"
     decoded = imread(io.BytesIO(fixed.data), format="png")
     np.testing.assert_allclose(decoded[..., :3] * 255, still, atol=1e-4)
     if live == "page":
@@ -165,15 +165,14 @@ def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
 
 def test_a_live_page_shows_the_families_that_have_curves(monkeypatch):
     monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
-    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     door = types.SimpleNamespace(port=1, nets={})
     monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
     families = mesh.polylines(Q)._replace(u=[], d1=[])
-    page = view.show(V, Q, families, live=True)
+    page = explorer.turn(V, Q, families, live=True)
     assert page.address.endswith("?families=v,d2")
     assert imread(io.BytesIO(page.picture), format="png").std() > 0.05  # drawn without OpenGL
     with pytest.raises(RuntimeError, match="no OpenGL"):
-        view.show(V, Q, families, live=False)
+        explorer.turn(V, Q, families, live=False)
 
 
 # --- with both ----------------------------------------------------------------------------

@@ -72,6 +72,9 @@ def main():
     chosen = {"pinned": ["-c", "constraints.txt"], "oldest": oldest(), "newest": []}[versions]
     if run([*pip, *chosen, "-e", ".[view,cad,test]"]):
         return "the packages could not be installed: see pip's message above"
+    # pip leaves our own modules out, and all where PIP_NO_COMPILE is set; Python does not make up
+    # for it where PYTHONDONTWRITEBYTECODE is set, and compiles them at every start instead
+    run([python, "-m", "compileall", "-qq", "-j", "0", venv, "inetlib"])
     (venv / "ready").touch()
     return 0
 

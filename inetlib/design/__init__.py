@@ -4,12 +4,12 @@ Every conformal map of a sheared grid is nearly an isogonal net for every pair o
 the optimisation that follows moves the vertices only a little along the surface.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import clean as cleaning
-from .. import parallelogram, reference, solver
+from .. import parallelogram, reference, repair, solver
 from ..solver.problem import Weights
 from ..solver.run import timed
 from . import flatten, overlay
@@ -29,7 +29,13 @@ AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcom
 
 
 class Cover(NamedTuple):
-    """The net V (n, 3), Q (f, 4), labelled, and its `Report`."""
+    """The net V (n, 3), Q (f, 4), labelled, and its `Report`.
+
+    >>> from inetlib import examples
+    >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
+    >>> net.report.converged, net.report.flips, round(float(np.degrees(net.report.theta.mean)), 6)
+    (True, 0, 70.0)
+    """
 
     V: np.ndarray
     Q: np.ndarray
@@ -37,20 +43,20 @@ class Cover(NamedTuple):
 
 
 def cover(
-    V,
-    F,
-    theta,
-    theta0,
-    count=1500,
-    size=None,
-    direction=0.0,
+    V: np.ndarray,
+    F: np.ndarray,
+    theta: float,
+    theta0: float,
+    count: int = 1500,
+    size: float | None = None,
+    direction: float = 0.0,
     *,
-    boundary="even",
-    optimise=True,
-    tolerance=1e-11,
-    progress=False,
-    callback=None,
-):
+    boundary: str = "even",
+    optimise: bool = True,
+    tolerance: float = 1e-11,
+    progress: bool = False,
+    callback: Callable | None = None,
+) -> Cover:
     """The surface V (n, 3), F triangles (f, 3) or quads (f, 4), covered by a net: a `Cover`.
 
     theta, theta0  the angles, radians
@@ -68,14 +74,17 @@ def cover(
     quads only, so that the surface shows at the boundary for less than a quad's width.  Over
     a ring the net closes, with the nearest size and direction for which it can.  ValueError,
     one sentence, for input that cannot be covered; safe repairs are named in the report.
-    Look at `design.report.converged`: a net that is off is returned, not raised.
+    Look at `report.converged`: a net that is off is returned, not raised.
     """
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
-    _check(count, size, direction)
+    count = parallelogram.check_whole("count", count) if size is None else count
+    size = size if size is None else parallelogram.check_positive("size", size)
+    if not np.isfinite(direction):
+        raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
     seconds = {}
     with timed(seconds, "check"):
-        surface = cleaning.clean(V, F)
+        surface = repair.clean(V, F)
         goal = reference.mesh(surface.V, surface.F)
     with timed(seconds, "flatten"):
         flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
@@ -91,66 +100,45 @@ def cover(
     if done and found.distance_max > AWAY:
         words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
         words += ": ask for more quads"
-    known = dict(winding=layer.winding, repairs=tuple(surface.repairs), seconds=seconds)
-    return Cover(net, layer.Q, found._replace(converged=done, message=words, **known))
-
-
-def _check(count, size, direction):
-    if size is None and not (np.isfinite(count) and count >= 1 and int(count) == count):
-        raise ValueError(f"count = {count}: a whole number of quads, 1 or more, is wanted")
-    if size is not None and not (np.isfinite(size) and size > 0):
-        raise ValueError(f"size = {size}: a positive length is wanted")
-    if not np.isfinite(direction):
-        raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
+    found = found._replace(converged=done, message=words, winding=layer.winding)
+    return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
 
 
 def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
-    """(V, converged, message) of the first attempt that is good, else of the best one.
-
-    On a faceted surface the last digits of the angles may not be reached: they are in space.
-    """
-    stopped = False
+    """(V, converged, message) of the first attempt that is good, else of the best one."""
+    stopped, area, tried = False, area_of(layer.V, layer.Q), []
 
     def ask(step, V):
         nonlocal stopped
         stopped = callback is not None and callback(step, V, layer.Q) is False
         return not stopped
 
+    common = dict(reference=goal, tolerance=tolerance, progress=progress, callback=ask)
     if not ask(None, layer.V):
         return layer.V, False, "stopped by the caller before the first step"
-
-    def solve(V, options):
-        return solver.optimize(
-            V,
-            layer.Q,
-            theta,
-            theta0,
-            reference=goal,
-            tolerance=tolerance,
-            progress=progress,
-            callback=ask,
-            **options,
-        )
-
-    best, area = None, area_of(layer.V, layer.Q)
     for options in ATTEMPTS:
-        result = solve(layer.V, options)
+        result = solver.optimize(layer.V, layer.Q, theta, theta0, **common, **options)
         close = not result.converged and _deviation(result) < FINE
-        if close and options is not POLISH and not stopped:
-            result = solve(result.V, POLISH)
-        off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
-        grown = not 1 / GROWN < area_of(result.V, layer.Q) / area < GROWN
-        key = grown, not result.converged, off if result.converged else _deviation(result)
-        if best is None or key < best[0]:
-            best = key, result
-        if stopped or (not grown and result.converged and off <= AWAY):
+        if close and options is not POLISH and not stopped:  # facets keep the last digits off
+            result = solver.optimize(result.V, layer.Q, theta, theta0, **common, **POLISH)
+        tried.append((_faults(result, layer.Q, area, goal), result))
+        if stopped or tried[-1][0] <= (False, False, AWAY):
             break
-    result = best[1]
-    if best[0][0]:
+    (folded, *_), result = min(tried, key=lambda attempt: attempt[0])
+    if folded:
         return result.V, False, f"the net has folded or collapsed; {result.message}"
     if stopped and not (result.converged or "stopped" in result.message):
         return result.V, False, f"stopped by the caller; the best net so far: {result.message}"
     return result.V, result.converged, result.message
+
+
+def _faults(result, Q, area, goal):
+    """(folded, not converged, how far off in space or else in angles): the smaller the better."""
+    folded = not 1 / GROWN < area_of(result.V, Q) / area < GROWN
+    if not result.converged:
+        return folded, True, _deviation(result)
+    off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
+    return folded, False, off
 
 
 def _deviation(result):

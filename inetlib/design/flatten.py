@@ -1,11 +1,7 @@
-"""Conformal maps of triangle meshes to the plane: disks, and rings with their period.
+"""Conformal maps of disks and rings of triangles to the plane, as complex numbers.
 
-Points of the plane are complex numbers.  The plain map of a disk is the spectral relative
-of LSCM: of all maps it has the smallest conformal energy for the mean square radius of its
-boundary, so that no pair of vertices must be pinned.  A ring is cut from one boundary to
-the other; the two banks of the cut differ by the period, and in the plain map the two
-boundaries become parallel lines.  The even map then lets the boundary bend until its scale
-is constant: of all conformal maps it is the one whose scale varies least.
+Plain: the spectral relative of LSCM for disks; a ring becomes a strip between parallel lines,
+its banks a period apart.  Even: a constant scale along the boundary, the least varying of all.
 """
 
 from typing import NamedTuple
@@ -13,9 +9,9 @@ from typing import NamedTuple
 import igl
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
-from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.csgraph import dijkstra
 
-from .. import mesh, ties
+from .. import mesh, repair, ties
 from ..solver import sparse
 
 ROUNDS = 100  # of the inverse iteration, at most; five are usual
@@ -31,10 +27,10 @@ ROUND = 1e-3  # a surface without a longest direction: its moment, of its size, 
 class Flat(NamedTuple):
     """A flattened surface, made by `flatten`; the area in the plane is that of the surface.
 
-    z (k,) complex, F (f, 3) triangles in the numbering of z, origin (k,) the vertex of the
-    surface each one is; period: complex, None for a disk.  Row f of F is triangle f of the
-    surface.  flips: flipped triangles; distortion (f,): longer / shorter half axis of the
-    ellipse that a circle becomes; scale (f,): length in the plane / length on the surface.
+    z (k,) complex, F (f, 3) the triangles of the surface in the numbering of z, origin (k,)
+    the vertex of the surface each one is; period: complex, None for a disk.  flips: flipped
+    triangles; distortion (f,): longer / shorter half axis of the ellipse that a circle
+    becomes; scale (f,): length in the plane / length on the surface.
     """
 
     z: np.ndarray
@@ -46,73 +42,31 @@ class Flat(NamedTuple):
     scale: np.ndarray
 
 
-def flatten(V, F, loops, boundary="even"):
-    """The surface V (n, 3), F (f, 3) with one or two boundary loops as a `Flat`.
+def flatten(V: np.ndarray, F: np.ndarray, loops: list, boundary: str = "even") -> Flat:
+    """The surface V (n, 3), F (f, 3), loops from `repair.clean` as a `Flat`.
 
-    V, F, loops as from `clean.clean`.  The real axis is the longest direction of a disk, and
-    runs around the hole of a ring.  boundary: "even" or "plain", see above; where the even
-    map would overlap itself or flip triangles, the plain one is taken.  ValueError if that
-    overlaps itself, too.
+    The real axis is the longest direction of a disk, and runs around the hole of a ring.
+    boundary: "even" or "plain"; where the even map would overlap itself or flip triangles,
+    the plain one is taken.  ValueError if that overlaps itself, too.
     """
     if boundary not in ("even", "plain"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
-    if len(loops) == 1:
-        faces, origin, period = F, np.arange(len(V)), None
-        ends = _ends(V, loops[0])
-        z, energy = _lscm(V, F, ends)
-        z = _disk(z, energy, loops[0])
-    else:
-        faces, origin, bank = _cut(F, _path(V, F, loops))
-        ends = np.flatnonzero(bank)[:2]  # any pins: no map is wanted
-        energy = _lscm(V[origin], faces, ends)[1]
-        z, period = _ring(energy, loops, origin, bank, len(V)), 1.0 + 0j
+    disk = len(loops) == 1
+    faces, origin, bank = (F, np.arange(len(V)), None) if disk else _cut(F, _path(V, F, loops))
+    ends = _ends(V, loops[0]) if disk else np.flatnonzero(bank)[:2]  # any: energy is all we want
+    uv, energy = igl.lscm(V[origin], faces, np.array(ends), np.array([[0.0, 0.0], [1.0, 0.0]]))
+    z, energy, period = uv[:, 0] + 1j * uv[:, 1], csr_array(energy), None if disk else 1.0 + 0j
+    z = _disk(z, energy, loops[0]) if disk else _ring(energy, loops, origin, bank, len(V))
     flat = _judged(V, F, z, faces, origin, period, ends)
     if boundary == "even":
-        z = _even(V, loops, flat, energy)
-        even = _judged(V, F, z, faces, origin, flat.period, ends)
+        even = _even(V, F, loops, flat, energy)
+        even = _judged(V, F, even, faces, origin, flat.period, ends)
         if even.flips <= flat.flips and _overlap(even) < OVERLAP:
             return even
     if (part := _overlap(flat)) > OVERLAP:
-        raise ValueError(
-            f"the flattened surface overlaps itself, {100 * part:.2g} % of it: "
-            "cut it into simpler pieces"
-        )
+        part = f"{100 * part:.2g} %"
+        raise ValueError(f"the flattened surface overlaps itself, {part} of it: cut it into pieces")
     return flat
-
-
-def _disk(z, energy, loop):
-    count = len(z)
-    matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
-    inverse = sparse.factor(matrix)
-    z = _unit_rim(z, loop)
-    for _ in range(ROUNDS):
-        load = np.zeros(count, dtype=complex)
-        load[loop] = z[loop]
-        x = inverse(np.concatenate([load.real, load.imag]))
-        x = x[:count] + 1j * x[count:]
-        x *= np.exp(1j * np.angle(np.vdot(x[loop], z[loop])))  # on flat disks rounding turns it
-        before, z = z, _unit_rim(x, loop)
-        if np.abs(z - before).max() < STILL * np.abs(z).max():
-            break
-    return z
-
-
-def _axis(z, F, ends):
-    """The angle of the longest direction of the flat triangles, from the first end to the second.
-
-    Where no direction is much longer than others, as on a square, it is the one of the ends.
-    """
-    a, b, c = z[F].T
-    area = np.imag(np.conj(b - a) * (c - a))
-    a, b, c = z[F].T - np.average((a + b + c) / 3, weights=area)
-    moment = np.average(a * a + b * b + c * c + a * b + b * c + c * a, weights=area)
-    size = np.average(np.abs(a) ** 2, weights=area)
-    way = z[ends[1]] - z[ends[0]]
-    if abs(moment) <= ROUND * size:
-        return np.angle(way)
-    axis = np.sqrt(moment)
-    aside = np.exp(1e-3j)  # so that an axis at right angles to the way is no tie
-    return np.angle(axis if np.real(np.conj(axis) * way * aside) >= 0 else -axis)
 
 
 def _ends(V, loop):
@@ -121,51 +75,30 @@ def _ends(V, loop):
     return first, loop[ties.first_largest(np.linalg.norm(V[loop] - V[first], axis=1))]
 
 
-def _lscm(V, F, ends):
-    """(z, energy): libigl's least squares conformal map and the matrix of its energy.
-
-    ends: two vertices; they are pinned to 0 and 1.
-    """
-    uv, energy = igl.lscm(V, F, np.array(ends), np.array([[0.0, 0.0], [1.0, 0.0]]))
-    return uv[:, 0] + 1j * uv[:, 1], csr_array(energy)
-
-
-def _unit_rim(z, loop):
-    z = z - z[loop].mean()
-    return z / np.linalg.norm(z[loop])
-
-
-# --- rings ----------------------------------------------------------------------------------
-
-
-def _ring(energy, loops, origin, bank, count):
-    """The map z with period 1 of a ring of `count` vertices.
-
-    The loops become the lines Im z = 0 and Im z = h, with the h of least energy.
-    """
-    k = len(origin)
-    column = np.arange(2 * count)  # x and y of each vertex; -1 for what is zero
-    column[count + loops[1]] = count + loops[1][0]
-    column[count + loops[0]] = column[0] = -1
-    number = np.unique(column, return_inverse=True)[1] - 1
-    column = number[np.concatenate([origin, origin + count])]
-    row = np.flatnonzero(column >= 0)
-    merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
-    jump = np.concatenate([bank, np.zeros(k)])
-    x = merge @ sparse.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
-    return x[:k] + bank + 1j * x[k:]
+def _disk(z, energy, loop):
+    """The plain map of a disk, by inverse iteration from the map z."""
+    count, before = len(z), 0
+    matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
+    inverse = sparse.factor(matrix)
+    for _ in range(ROUNDS):
+        z = z - z[loop].mean()
+        z /= np.linalg.norm(z[loop])
+        if np.abs(z - before).max() < STILL * np.abs(z).max():
+            break
+        load = np.zeros(count, dtype=complex)
+        load[loop] = z[loop]
+        x = inverse(np.concatenate([load.real, load.imag]))
+        before, z = z, x[:count] + 1j * x[count:]
+        z *= np.exp(1j * np.angle(np.vdot(z[loop], before[loop])))  # rounding turns flat disks
+    return z
 
 
 def _path(V, F, loops):
-    """The vertices of a shortest path along edges from the second loop to the first.
-
-    Of equally short ones that with the first end, then with the lowest vertex numbers.
-    """
-    edges = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-    length = np.linalg.norm(V[edges[:, 0]] - V[edges[:, 1]], axis=1)
-    ends = np.sort(edges, axis=1)
-    ends, index = np.unique(ends, axis=0, return_index=True)
-    graph = coo_array((length[index], tuple(ends.T)), shape=(len(V), len(V))).tocsr()
+    """A shortest path from the second loop to the first; of equal ones that of lowest numbers."""
+    start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
+    once = (start < end) | (mesh.opposites(F) < 0)
+    length = np.linalg.norm(V[start] - V[end], axis=1)[once]
+    graph = coo_array((length, (start[once], end[once])), shape=(len(V), len(V))).tocsr()
     graph = graph + graph.T
     distance = dijkstra(graph, indices=loops[1], min_only=True)
     path = [int(loops[0][ties.first_smallest(distance[loops[0]])])]
@@ -179,45 +112,51 @@ def _path(V, F, loops):
 
 def _cut(F, path):
     """(faces, origin, bank) of the triangles cut along a path: bank marks its left copies."""
-    start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
-    after = np.roll(np.arange(F.size).reshape(-1, 3), -1, axis=1).ravel()
-    twin = mesh.opposites(F)
+    start, twin = F.ravel(), mesh.opposites(F)
     step = np.full(F.max() + 1, -1)
     step[path[:-1]] = path[1:]
-    left = step[start] == end
+    left = step[start] == np.roll(F, -1, axis=1).ravel()
     closed = left | (left[twin] & (twin >= 0))
-    half = np.flatnonzero((twin >= 0) & ~closed)
-    one = np.concatenate([half, after[half]])  # corners are numbered as the half-edges they start
-    two = np.concatenate([after[twin[half]], twin[half]])
-    graph = coo_array((np.ones(len(one)), (one, two)), shape=(F.size, F.size))
-    count, faces = connected_components(graph, directed=False)
-    origin = np.empty(count, dtype=np.int64)
-    origin[faces] = start
-    bank = np.zeros(count, dtype=bool)
-    bank[faces[left]] = bank[faces[after[left]]] = True
-    return faces.reshape(-1, 3).astype(np.int64), origin, bank
+    corner = repair.corner_fans(F, np.where(closed, -1, twin)).astype(np.int64)
+    faces, origin = corner.reshape(-1, 3), np.empty(corner.max() + 1, dtype=np.int64)
+    origin[corner] = start
+    bank = np.zeros(len(origin), dtype=bool)
+    bank[corner[left]] = bank[np.roll(faces, -1, axis=1).ravel()[left]] = True
+    return faces, origin, bank
 
 
-# --- even boundaries ------------------------------------------------------------------------
+def _ring(energy, loops, origin, bank, count):
+    """The plain map of a ring: period 1, Im z = 0 and h on the loops, with the best h."""
+    k = len(origin)
+    column = np.arange(2 * count)  # x and y of each vertex; -1 for what is zero
+    column[count + loops[1]] = count + loops[1][0]
+    column[count + loops[0]] = column[0] = -1
+    number = np.unique(column, return_inverse=True)[1] - 1
+    column = number[np.concatenate([origin, origin + count])]
+    row = np.flatnonzero(column >= 0)
+    merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
+    jump = np.concatenate([bank, np.zeros(k)])
+    x = merge @ sparse.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
+    return x[:k] + bank + 1j * x[k:]
 
 
-def _even(V, loops, flat, energy):
+def _even(V, F, loops, flat, energy):
     """The map whose boundary edges have lengths in proportion to those of the surface.
 
-    Steps: the edges keep their directions and get their wanted lengths as targets, then
-    the sum of the conformal energy and the squared distances from the targets is minimised.
+    In steps the edges keep their directions and get the wanted lengths as targets; the sum of
+    the conformal energy and the squared distances from the targets becomes the least.
     """
-    count, k = len(V), len(flat.z)
-    z = flat.z[np.unique(flat.origin, return_index=True)[1]]
-    banks = flat.z - z[flat.origin]  # 0, or the period on one side of the cut
-    start, end, loop = _rims(flat, loops, count)
-    length = np.linalg.norm(V[flat.origin[end]] - V[flat.origin[start]], axis=1)
-    difference = sparse.rows(
-        np.tile([[[1.0, -1.0]]], (len(start), 1, 1)), flat.origin[np.stack([end, start], 1)], count
-    )
-    jump = banks[end] - banks[start]
+    count, k, origin = len(V), len(flat.z), flat.origin
+    z = flat.z[np.unique(origin, return_index=True)[1]]
+    banks = flat.z - z[origin]  # 0, or the period on one side of the cut
+    half = np.flatnonzero(mesh.opposites(F) < 0)
+    ends = np.stack([np.roll(flat.F, -1, axis=1).ravel()[half], flat.F.ravel()[half]], axis=1)
+    loop = np.isin(origin[ends[:, 1]], loops[0], invert=True).astype(int)
+    jump = banks[ends[:, 0]] - banks[ends[:, 1]]
+    length = np.linalg.norm(V[origin[ends[:, 0]]] - V[origin[ends[:, 1]]], axis=1)
+    difference = sparse.rows(np.tile([[[1.0, -1.0]]], (len(half), 1, 1)), origin[ends], count)
     weight = BEND / length
-    merge = csr_array((np.ones(2 * k), (np.arange(2 * k), np.r_[flat.origin, flat.origin + count])))
+    merge = csr_array((np.ones(2 * k), (np.arange(2 * k), np.r_[origin, origin + count])))
     bend = difference.T @ diags_array(weight) @ difference
     A = merge.T @ energy @ merge + block_diag([bend, bend])
     hold = 1e-10 * A.diagonal().mean()  # near the last map, wherever the cut is
@@ -235,46 +174,41 @@ def _even(V, loops, flat, energy):
         z -= z.mean() if flat.period is None else z[0].real + 1j * z.imag.mean()
         if np.abs(z - before - (z - before).mean()).max() < STRAIGHT * np.ptp(z.real):
             break
-    return z[flat.origin] + banks
-
-
-def _rims(flat, loops, count):
-    """(start, end) of the boundary edges, numbered as z is, without the cut, and their loop."""
-    following, owner = np.full(count, -1), np.full(count, -1)
-    for number, loop in enumerate(loops):
-        following[loop], owner[loop] = np.roll(loop, -1), number
-    half = np.flatnonzero(mesh.opposites(flat.F) < 0)
-    start, end = flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]
-    rim = following[flat.origin[start]] == flat.origin[end]
-    return start[rim], end[rim], owner[flat.origin[start[rim]]]
-
-
-# --- judging --------------------------------------------------------------------------------
+    return z[origin] + banks
 
 
 def _judged(V, F, z, faces, origin, period, ends):
     """The `Flat` of a map, scaled to the area of the surface, a disk turned to its long axis."""
     if period is None:
         z = z * np.exp(-1j * _axis(z, faces, ends))
-    flips, distortion, scale, area = _judge(V, F, z[faces])
-    grow = np.sqrt(area.sum() / np.sum(area * scale**2))
-    period = None if period is None else period * grow
-    return Flat(z * grow, faces, origin, period, flips, distortion, scale * grow)
-
-
-def _judge(V, F, corners):
-    """(flips, distortion (f,), scale (f,), area (f,)) of the triangles with `corners` (f, 3)."""
     a, b, c = np.moveaxis(V[F], 1, 0)
     length = np.linalg.norm(b - a, axis=1)
     along = np.einsum("ij,ij->i", c - a, b - a) / length
     height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / length
-    p, q = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    by_x = p / length
-    by_y = (q - along * by_x) / height
+    a, b, c = z[faces].T
+    by_x = (b - a) / length
+    by_y = (c - a - along * by_x) / height
     one, two = np.abs(by_x - 1j * by_y) / 2, np.abs(by_x + 1j * by_y) / 2
-    scale = np.sqrt(np.abs(one**2 - two**2))
     distortion = (one + two) / np.maximum(np.abs(one - two), 1e-300)
-    return int(np.sum(one <= two)), distortion, scale, length * height / 2
+    scale, area = np.sqrt(np.abs(one**2 - two**2)), length * height / 2
+    grow = np.sqrt(area.sum() / np.sum(area * scale**2))
+    period = None if period is None else period * grow
+    return Flat(z * grow, faces, origin, period, int(np.sum(one <= two)), distortion, scale * grow)
+
+
+def _axis(z, F, ends):
+    """The angle of the longest direction, or on squares and the like that between the ends."""
+    a, b, c = z[F].T
+    area = np.imag(np.conj(b - a) * (c - a))
+    a, b, c = z[F].T - np.average((a + b + c) / 3, weights=area)
+    moment = np.average(a * a + b * b + c * c + a * b + b * c + c * a, weights=area)
+    size = np.average(np.abs(a) ** 2, weights=area)
+    way = z[ends[1]] - z[ends[0]]
+    if abs(moment) <= ROUND * size:
+        return np.angle(way)
+    axis = np.sqrt(moment)
+    aside = np.exp(1e-3j)  # so that an axis at right angles to the way is no tie
+    return np.angle(axis if np.real(np.conj(axis) * way * aside) >= 0 else -axis)
 
 
 def _overlap(flat):

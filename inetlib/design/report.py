@@ -1,11 +1,13 @@
 """The numbers of a net, made in one place: angles, shape, and how well it covers a surface."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import igl
 import numpy as np
 
 from .. import measure, mesh, reference
+from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
 
@@ -71,37 +73,43 @@ class Report(NamedTuple):
         """The largest deviation of theta and theta0 of any face, radians."""
         return max(self.theta.max_deviation, self.theta0.max_deviation)
 
-    @property
-    def mean_deviation(self):
-        """The deviation of both angles on average, radians."""
-        return (self.theta.mean_deviation + self.theta0.mean_deviation) / 2
 
-
-def report(V, Q, polygons=(), **wanted):
+def report(
+    V: np.ndarray,
+    Q: np.ndarray,
+    polygons: Sequence = (),
+    lam: float | None = None,
+    mu: float | None = None,
+    theta: float | None = None,
+    theta0: float | None = None,
+) -> Report:
     """The `Report` of a labelled net V (n, 3), Q (f, 4).
 
-    polygons: faces that are no quads; wanted: any of lam, mu, theta, theta0 (radians) that
-    the net was asked to have.  ValueError where a face has collapsed.
+    polygons: faces that are no quads; lam, mu, theta, theta0 (radians): what was asked for.
+    ValueError where a face has collapsed.
     """
-    wanted = {name: wanted.get(name) for name in NAMES}
+    wanted = dict(zip(NAMES, (lam, mu, theta, theta0), strict=True))
     values = *measure.ratios(V, Q), *measure.angles(V, Q)
     spreads = [measure.spread(x, wanted[name]) for name, x in zip(NAMES, values, strict=True)]
     quality = measure.quality(V, Q)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
-    return Report(
-        len(np.unique(Q)),
-        len(Q),
-        tuple(sorted(len(polygon) for polygon in polygons)),
-        wanted,
-        *spreads,
-        *(quality.flips, quality.area_ratio, quality.aspect, quality.planarity),
-        *(float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min())),
-    )
+    corners = tuple(sorted(len(polygon) for polygon in polygons))
+    shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
+    sizes = (float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
+    known = len(np.unique(Q)), len(Q), corners, wanted, *spreads, *shape, *sizes
+    return Report(*known)
 
 
-def survey(V, Q, theta, theta0, goal, flat):
-    """The `Report` of the net V, Q over the reference `goal`, flattened to `flat`."""
+def survey(
+    V: np.ndarray,
+    Q: np.ndarray,
+    theta: float,
+    theta0: float,
+    goal: reference.Reference,
+    flat: Flat,
+) -> Report:
+    """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
     net = reference.mesh(V, Q)
     back = np.linalg.norm(net.closest(goal.V)[0] - goal.V, axis=1)
@@ -120,18 +128,16 @@ def survey(V, Q, theta, theta0, goal, flat):
     )
 
 
-def area_of(V, F):
+def area_of(V: np.ndarray, F: np.ndarray) -> float:
     """The area of triangles (f, 3) or quads (f, 4), cut along their shorter diagonals."""
     return float(igl.doublearea(*mesh.triangles(V, F)).sum() / 2)
 
 
-def numbers(report):
+def numbers(report: Report) -> dict:
     """The `Report` as a dict for JSON, angles in degrees; what does not apply is left out."""
-    r, plain = report, report._asdict()
-    for name in (*NAMES, "repairs"):
-        del plain[name]
-    if r.converged is None:
-        plain = {name: x for name, x in plain.items() if x is not None}
+    r, out = report, (*NAMES, "repairs")
+    covers = r.converged is not None
+    plain = {k: x for k, x in r._asdict().items() if k not in out and (covers or x is not None)}
     plain["wanted"] = {k: x if x is None else _shown(k, x) for k, x in r.wanted.items()}
     spreads = {k: {n: _shown(k, x) for n, x in getattr(r, k)._asdict().items()} for k in NAMES}
     plain["ratios"] = {k: spreads[k] for k in NAMES[:2]}
@@ -143,13 +149,13 @@ def _shown(name, x):
     return float(np.degrees(x)) if name.startswith("theta") else x
 
 
-def text(report):
+def text(report: Report) -> str:
     """The `Report` as lines of text, angles in degrees."""
-    r, count = report, f"{report.vertices} vertices, {report.quads} quads"
+    r, lines = report, [f"{report.vertices} vertices, {report.quads} quads"]
     if r.polygons:
-        corners = ", ".join(str(n) for n in r.polygons[:8]) + ", ..." * (len(r.polygons) > 8)
-        count += f"; {len(r.polygons)} other faces, with {corners} corners"
-    lines = [count, f"{'':12}{'mean':>15}{'lowest':>15}{'highest':>15}   largest deviation"]
+        corners = ", ".join(map(str, r.polygons[:8])) + ", ..." * (len(r.polygons) > 8)
+        lines[0] += f"; {len(r.polygons)} other faces, with {corners} corners"
+    lines += [f"{'':12}{'mean':>15}{'lowest':>15}{'highest':>15}   largest deviation"]
     for name in NAMES:
         spread, wanted = getattr(r, name), r.wanted[name]
         mean, low, high, most, _ = (_shown(name, x) for x in spread)

@@ -3,8 +3,7 @@
 Angles are degrees here, as on the command line and on the page.
 """
 
-from dataclasses import dataclass, fields, replace
-from math import isfinite
+from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
@@ -46,10 +45,7 @@ HEIGHTS = tuple(0.5 * k for k in range(7))  # of the radii of a profile
 
 
 class Range(NamedTuple):
-    """Of a number: the smallest and the largest value, the slider's step, the unit, the kind.
-
-    open: the ends themselves are excluded; whole: whole numbers only.
-    """
+    """Of a number: both ends, the slider's step, the unit; open: without the ends."""
 
     low: float
     high: float
@@ -58,50 +54,66 @@ class Range(NamedTuple):
     open: bool = False
     whole: bool = False
 
+    def read(self, value):
+        """The number that a value or a text is, None where it is none of the range."""
+        try:
+            number = float(value)
+        except (TypeError, ValueError, OverflowError):
+            return None
+        at_end = self.open and number in (self.low, self.high)
+        broken = self.whole and not number.is_integer()
+        if not self.low <= number <= self.high or at_end or broken:
+            return None
+        return int(number) if self.whole else number
 
-RANGES = {
-    "theta": Range(0, 180, 1, "\u00b0", open=True),
-    "theta0": Range(0, 180, 1, "\u00b0", open=True),
-    "m": Range(3, 150, whole=True),
-    "n": Range(1, 150, whole=True),
-    "bend": Range(0, 90, 1, "\u00b0"),
-    "px": Range(-3, 3, 0.05),
-    "py": Range(-3, 3, 0.05),
-    "pz": Range(-3, 3, 0.05),
-    "quads": Range(10, 20000, 10, whole=True),
-    "direction": Range(-90, 90, 1, "\u00b0"),
-    "radius": Range(0.05, 3, 0.01),
-}
-WORDS = {"radius": "a radius of the profile", "px": "pole x", "py": "pole y", "pz": "pole z"}
+    def wanted(self):
+        """The range in words."""
+        between = "above {:g} and below {:g}" if self.open else "from {:g} to {:g}"
+        kind = "whole number" if self.whole else "number"
+        return f"a {kind} {between.format(self.low, self.high)}{self.unit}"
+
+
+ANGLE = Range(0, 180, 1, "\u00b0", open=True)
+BEND = Range(0, 90, 1, "\u00b0")
+BEND_ROLLED = BEND._replace(high=350)
+POLE, RADIUS = Range(-3, 3, 0.05), Range(0.05, 3, 0.01)
+SWITCH = {"1": True, "0": False, "true": True, "false": False}
+WORDS = {"px": "pole x", "py": "pole y", "pz": "pole z", "radii": "a radius of the profile"}
+
+
+def _of(allowed, default):
+    """A field with what is allowed: a `Range`, names, or a switch; of sequences, for each part."""
+    return field(default=default, metadata={"allowed": allowed})
 
 
 @dataclass(frozen=True)
 class Choice:
     """Everything that a net of the explorer depends on, and what is shown of it."""
 
-    kind: str = "plane"
-    map: str = "square"
-    surface: str = "minimal"
-    source: str = "roof"
-    theta: float = 60.0
-    theta0: float = 60.0
-    lock: bool = False
-    m: int = 20
-    n: int = 32
-    bend: float = 30.0
-    moebius: bool = False
-    px: float = -1.4
-    py: float = 0.6
-    pz: float = 0.3
-    radii: tuple = PROFILES["vase"]
-    quads: int = 800
-    direction: float = 0.0
-    families: tuple = ("u", "v")
-    parallelograms: bool = False
-    shade: bool = False
+    kind: str = _of(OPTIONS["kind"], "plane")
+    map: str = _of(OPTIONS["map"], "square")
+    surface: str = _of(OPTIONS["surface"], "minimal")
+    source: str = _of(OPTIONS["source"], "roof")
+    theta: float = _of(ANGLE, 60.0)
+    theta0: float = _of(ANGLE, 60.0)
+    lock: bool = _of(SWITCH, False)
+    m: int = _of(Range(3, 150, whole=True), 20)
+    n: int = _of(Range(1, 150, whole=True), 32)
+    bend: float = _of(BEND, 30.0)
+    moebius: bool = _of(SWITCH, False)
+    px: float = _of(POLE, -1.4)
+    py: float = _of(POLE, 0.6)
+    pz: float = _of(POLE, 0.3)
+    radii: tuple = _of(RADIUS, PROFILES["vase"])
+    quads: int = _of(Range(10, 20000, 10, whole=True), 800)
+    direction: float = _of(Range(-90, 90, 1, "\u00b0"), 0.0)
+    families: tuple = _of(FAMILIES, ("u", "v"))
+    parallelograms: bool = _of(SWITCH, False)
+    shade: bool = _of(SWITCH, False)
 
 
-NAMES = tuple(field.name for field in fields(Choice))
+ALLOWED = {f.name: f.metadata["allowed"] for f in fields(Choice)}
+NAMES = tuple(ALLOWED)
 USES = {  # of each kind, besides the angles and what is shown
     "plane": ("map", "m", "n", "px", "py"),
     "isothermal": ("surface", "m", "n", "bend", "moebius", "px", "py", "pz"),
@@ -112,13 +124,7 @@ USES = {  # of each kind, besides the angles and what is shown
 SHOWN = "families", "parallelograms", "shade"
 
 
-def limits(choice, name):
-    """The `Range` of a number: the same for all choices, but for the angle of bending."""
-    rolled = name == "bend" and choice.surface == "rolled"
-    return RANGES[name]._replace(high=350) if rolled else RANGES[name]
-
-
-def changed(choice, **values):
+def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
     """(the choice with these values, sentences on those that are refused).
 
     Values may be texts, as in a link.  Refused values leave the choice as it was.  With the
@@ -128,35 +134,49 @@ def changed(choice, **values):
     good, problems = {}, []
     for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending
         try:
-            surface = good.get("surface", choice.surface)
-            good[name] = _checked(replace(choice, surface=surface), name, values[name])
+            good[name] = _checked(name, values[name], good.get("surface", choice.surface))
         except ValueError as error:
             problems.append(str(error))
-    locked = good.get("lock", choice.lock)
-    if locked and "theta" not in good and "theta0" in good:
-        good["theta"] = good["theta0"]
-    elif locked and {"theta", "lock"} & set(good):
-        good["theta0"] = good.get("theta", choice.theta)
+    if good.get("lock", choice.lock) and {"lock", "theta", "theta0"} & set(good):
+        angle = good.get("theta", good.get("theta0", choice.theta))
+        good |= {"theta": angle, "theta0": angle}
     found = replace(choice, **good)
-    top = limits(found, "bend").high
-    return (replace(found, bend=float(top)) if found.bend > top else found), problems
+    most = _allowed("bend", found.surface).high
+    return replace(found, bend=min(found.bend, float(most))), problems
 
 
-def _checked(choice, name, value):
+def _allowed(name, surface):
+    return BEND_ROLLED if (name, surface) == ("bend", "rolled") else ALLOWED[name]
+
+
+def _checked(name, value, surface):
     if name not in NAMES:
-        raise ValueError(f"{name}: there is no such value")
-    if name in OPTIONS:
-        if not (isinstance(value, str) and value in OPTIONS[name]):
-            known = ", ".join(OPTIONS[name])
-            raise ValueError(f"{name} = {_short(value)}: one of {known} is wanted")
-        return value
-    if name in RANGES:
-        return _number(value, name, limits(choice, name))
-    if name == "radii":
-        return _radii(value)
+        raise ValueError(f"{_short(name)} is no parameter")
+    allowed = _allowed(name, surface)
     if name == "families":
-        return _families(value)
-    return _switch(name, value)
+        given = {_read(name, part, allowed) for part in _parts(value) if part != ""}
+        return tuple(family for family in FAMILIES if family in given)
+    if name == "radii":
+        parts = PROFILES.get(str(value)) or _parts(value)
+        if len(parts) != len(HEIGHTS):
+            names = ", ".join(PROFILES)
+            raise ValueError(f"radii: {len(HEIGHTS)} numbers, or one of {names}, are wanted")
+        return tuple(_read(name, part, allowed) for part in parts)
+    return _read(name, value, allowed)
+
+
+def _read(name, value, allowed):
+    """The value, or one part of it, as it is allowed; ValueError where it is not."""
+    if isinstance(allowed, Range):
+        found, wanted = allowed.read(value), allowed.wanted()
+    elif allowed is SWITCH:
+        found, wanted = SWITCH.get(str(value).lower()), "1 or 0"
+    else:
+        found = str(value) if str(value) in allowed else None
+        wanted = f"one of {', '.join(allowed)}"
+    if found is None:
+        raise ValueError(f"{WORDS.get(name, name)} = {_short(value)}: {wanted} is wanted")
+    return found
 
 
 def _short(value):
@@ -164,60 +184,14 @@ def _short(value):
     return repr(text if len(text) < 24 else text[:20] + " ...")
 
 
-def _number(value, name, bounds):
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        number = float("nan")
-    inside = bounds.low < number < bounds.high if bounds.open else True
-    whole = number == int(number) if bounds.whole and isfinite(number) else True
-    if not (isfinite(number) and bounds.low <= number <= bounds.high and inside and whole):
-        kind = "a whole number" if bounds.whole else "a number"
-        between = "above {} and below {}" if bounds.open else "from {} to {}"
-        wanted = between.format(f"{bounds.low:g}", f"{bounds.high:g}")
-        raise ValueError(
-            f"{WORDS.get(name, name)} = {_short(value)}: {kind} {wanted}{bounds.unit} is wanted"
-        )
-    return int(number) if bounds.whole else number
-
-
-def _radii(value):
-    if isinstance(value, str) and value in PROFILES:
-        return PROFILES[value]
-    parts = _parts(value)
-    if len(parts) != len(HEIGHTS):
-        raise ValueError(
-            f"radii: {len(HEIGHTS)} numbers, or one of {', '.join(PROFILES)}, are wanted"
-        )
-    return tuple(_number(part, "radius", RANGES["radius"]) for part in parts)
-
-
-def _parts(value, otherwise=()):
-    """The parts of a text with commas or of a sequence; of anything else, `otherwise`."""
+def _parts(value):
+    """The parts of a text with commas, or of a sequence."""
     if isinstance(value, str):
         return value.split(",")
-    return list(value) if isinstance(value, (list, tuple, set, dict)) else list(otherwise)
+    return list(value) if isinstance(value, (list, tuple, set, dict)) else [value]
 
 
-def _families(value):
-    given = {str(part) for part in _parts(value, (None,)) if part != ""}
-    if unknown := given - set(FAMILIES):
-        raise ValueError(f"families = {_short(sorted(unknown)[0])}: u, v, d1, d2 are wanted")
-    return tuple(name for name in FAMILIES if name in given)
-
-
-def _switch(name, value):
-    known = {"1": True, "0": False, "true": True, "false": False}
-    text = str(value).lower()
-    if text not in known:
-        raise ValueError(f"{name} = {_short(value)}: 1 or 0 is wanted")
-    return known[text]
-
-
-# --- links --------------------------------------------------------------------------------
-
-
-def link(choice):
+def link(choice: Choice) -> str:
     """The choice as URL parameters: what its kind uses, and what is shown."""
     names = ("kind", "theta", "theta0", "lock", *USES[choice.kind], *SHOWN)
     return urlencode([(name, _text(getattr(choice, name))) for name in names], safe=",")
@@ -231,11 +205,7 @@ def _text(value):
     return repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
 
 
-def parse(query, choice=None):
+def parse(query: str, choice: Choice | None = None) -> tuple[Choice, list[str]]:
     """(a choice, sentences on what is wrong) of URL parameters, with or without the `?`."""
-    pairs, problems = parse_qsl(query.removeprefix("?")[:4000], keep_blank_values=True), []
-    values = dict(pairs)
-    problems += [f"{_short(name)} is no parameter" for name in values if name not in NAMES]
-    known = {name: value for name, value in values.items() if name in NAMES}
-    found, wrong = changed(choice or Choice(), **known)
-    return found, problems + wrong
+    pairs = parse_qsl(query.removeprefix("?")[:4000], keep_blank_values=True)
+    return changed(choice or Choice(), **dict(pairs))

@@ -1,25 +1,13 @@
-"""The nets of the explorer: constructed ones, those found by optimisation, and their code."""
+"""The nets of the explorer: for each kind three lines of Python, run and printed alike."""
 
-import cmath
-from math import radians
+from collections.abc import Callable
+from math import cos, radians
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import (
-    conformal,
-    design,
-    developable,
-    examples,
-    loxodrome,
-    mesh,
-    moebius,
-    parallelogram,
-    reference,
-    solver,
-    surfaces,
-)
-from .choices import HEIGHTS
+from .. import examples, parallelogram
+from .choices import HEIGHTS, Choice
 
 FOUND = "freeform", "cover"  # by optimisation; all others are constructed
 DISKS = {  # centre and radius of the disk that the grid fills, in the plane of the parameters
@@ -32,11 +20,20 @@ DISKS = {  # centre and radius of the disk that the grid fills, in the plane of 
     "sphere": (0j, 2.4),
     "rolled": (0j, 1.0),
 }
-KAPPA = {"exp": 1}
-EXAMPLES = {
-    "roof": "wavy_roof",
-    "saddle": "saddle_with_hole",
-    "shell": "hanging_shell",
+IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
+GRID = "z = conformal.sheared_grid({theta}, {theta0}, {m}, {n}, {origin}, {edge})"
+ROLLED = "z = developable.rolled_grid({theta}, {theta0}, {m}, {n}, {curvature}, {origin}, {edge})"
+MAPS = {
+    "identity": "z",
+    "square": "z**2",
+    "inverse": "1 / z",
+    "exp": "np.exp(z)",
+    "moebius": "conformal.moebius([[0, 1], [1, {pole}]], z)",
+}
+POINTS = {
+    "minimal": "surfaces.conjugate({bend}).point(z.real, z.imag)",
+    "sphere": "surfaces.SPHERE.point(z.real, z.imag)",
+    "rolled": "developable.roll(z, {curvature})",
 }
 
 
@@ -48,208 +45,159 @@ class Made(NamedTuple):
     message: str
 
 
-def construct(choice):
-    """The net of a choice that needs no optimisation; ValueError where there is none."""
-    makers = {"plane": _plane, "isothermal": _isothermal, "revolution": _revolution}
-    return makers[choice.kind](choice)
+class Recipe(NamedTuple):
+    """Three lines of Python with {names} in the place of values, and a sentence on the net.
+
+    Some `rooms` are imported, `start` is done, `net` makes the net, `take` finds V and Q in it.
+    """
+
+    rooms: str
+    start: str
+    net: str
+    message: str
+    take: str = "V, Q = {net}"
 
 
-def find(choice, surface=None, callback=None):
-    """The net of a choice that needs an optimisation; callback(step, V, Q) may return False.
+def make(
+    choice: Choice, surface: tuple | None = None, callback: Callable = lambda *_: None
+) -> Made:
+    """The net of a choice; ValueError where there is none.
 
-    surface: `io.Surface`, that of the file.  The callback's first step is None: the start.
+    surface: `io.Surface`, that of the file; callback(step, V, Q) sees the start of an
+    optimisation, with the step None, and every step, and may return False to end it.
+    """
+    recipe, values = RECIPES[choice.kind](choice), _values(choice)
+    names = {k: np.radians(x) if k in IN_DEGREES else x for k, x in values.items()}
+    names |= {"np": np, "callback": callback, "surface": surface}
+    # What runs is the recipe's own text with these names: no value becomes a part of it.
+    words = {name: name for name in values} | {"callback": ", callback=callback", "net": "net"}
+    exec(f"from inetlib import {recipe.rooms}", names)
+    if (choice.kind, choice.source) != ("cover", "file"):
+        exec(recipe.start.format_map(words), names)
+    elif surface is None:
+        raise ValueError("no file was named on the command line: choose one of the examples")
+    if choice.kind == "freeform":
+        V, Q = names["V"], names["Q"]
+        if callback(None, V, Q) is False:
+            return Made(V, Q, "stopped before the first step")
+        names["callback"] = lambda step, V: callback(step, V, Q)
+    net = names["net"] = eval(recipe.net.format_map(words), names)
+    exec(recipe.take.format_map(words), names)
+    repairs = net.report.repairs if choice.kind == "cover" else ()
+    return Made(names["V"], names["Q"], "; ".join([recipe.message.format(net), *repairs]))
+
+
+def code(choice: Choice, path: object = "surface.obj") -> str:
+    """Three lines of Python that make the net, V and Q; path: of the surface's file."""
+    recipe = RECIPES[choice.kind](choice)
+    words = {name: _said(name, x) for name, x in _values(choice, path).items()} | {"callback": ""}
+    words["net"] = recipe.net.format_map(words)
+    lines = recipe.start.format_map(words), recipe.take.format_map(words)
+    return "\n".join([f"import numpy as np; from inetlib import {recipe.rooms}", *lines])
+
+
+def _said(name, value):
+    return f"np.radians({repr(value).removesuffix('.0')})" if name in IN_DEGREES else repr(value)
+
+
+def _values(choice, path=None):
+    """What a recipe may name: the choice, and what follows from it."""
+    values = vars(choice) | {
+        "pole": -complex(choice.px, choice.py),
+        "points": list(zip(choice.radii, HEIGHTS, strict=True)),
+        "path": str(path),
+    }
+    name = {"plane": choice.map, "isothermal": choice.surface}.get(choice.kind)
+    return values | (_grid(choice, *DISKS[name]) if name else {})
+
+
+def _grid(choice, centre, radius):
+    """The origin and the edge of the sheared grid that fills a disk, rounded for short code.
+
+    And the curvature that bends it by the chosen angle from one side to the other.
     """
     angles = radians(choice.theta), radians(choice.theta0)
-    if choice.kind == "freeform":
-        V, Q = surfaces.freeform_patch(choice.m, choice.n)
-        if callback is not None and callback(None, V, Q) is False:
-            return Made(V, Q, "stopped before the first step")
-        near = reference.mesh(V, Q)
-        after = None if callback is None else lambda step, V: callback(step, V, Q)
-        found = solver.optimize(V, Q, *angles, reference=near, callback=after)
-        return Made(found.V, Q, found.message)
-    V, F = _surface(choice, surface)
-    options = {"count": choice.quads, "direction": radians(choice.direction)}
-    found = design.cover(V, F, *angles, **options, callback=callback)
-    return Made(found.V, found.Q, "; ".join([found.report.message, *found.report.repairs]))
-
-
-def _surface(choice, surface):
-    if choice.source != "file":
-        return getattr(examples, EXAMPLES[choice.source])()
-    if surface is None:
-        raise ValueError("no file was named on the command line: choose one of the examples")
-    return surface.V, surface.F
-
-
-# --- constructions --------------------------------------------------------------------------
-
-
-def grid(choice, name):
-    """(origin, edge) of the sheared grid that fills the disk of a map or surface.
-
-    Both are rounded, so that the code is short and makes the same net.
-    """
-    centre, radius = DISKS[name]
-    lam, mu = parallelogram.ratios(radians(choice.theta), radians(choice.theta0))
+    lam, mu = parallelogram.ratios(*angles)
     along, across = choice.m, choice.n * parallelogram.rho(lam, mu)
-    edge = _digits(2 * radius / max(abs(along + across), abs(along - across)), 5)
-    middle = complex(edge * (along + across) / 2)
-    return complex(_digits(centre.real - middle.real), _digits(centre.imag - middle.imag)), edge
+    edge = _rounded(2 * radius / max(abs(along + across), abs(along - across)), 5)
+    corner = centre - complex(edge * (along + across) / 2)
+    width = edge * (choice.m + choice.n * abs(cos(angles[1])) / mu)
+    return {
+        "origin": complex(_rounded(corner.real), _rounded(corner.imag)),
+        "edge": edge,
+        "curvature": _rounded(radians(choice.bend) / width),
+    }
 
 
-def _digits(number, digits=6):
+def _rounded(number, digits=6):
     return float(f"{number:.{digits}g}")
 
 
-def _sheared(choice, name):
-    origin, edge = grid(choice, name)
-    angles = radians(choice.theta), radians(choice.theta0)
-    options = {"kappa": KAPPA[name]} if name in KAPPA else {}
-    return conformal.sheared_grid(*angles, choice.m, choice.n, origin, edge, **options)
+# --- the recipes --------------------------------------------------------------------------
 
 
 def _plane(choice):
-    z = _sheared(choice, choice.map)
-    maps = {
-        "identity": lambda z: z,
-        "square": lambda z: z**2,
-        "inverse": lambda z: 1 / z,
-        "exp": np.exp,
-        "moebius": lambda z: conformal.moebius([[0, 1], [1, -complex(choice.px, choice.py)]], z),
-    }
-    with np.errstate(all="ignore"):
-        return Made(*conformal.quads(maps[choice.map](z)), _exact(choice.map))
-
-
-def _exact(name):
-    if name in ("inverse", "moebius"):
-        return "conformal image: the angles are those of a smooth net, up to the square of the edge"
-    return "exact: this map keeps both angles of finite quads (B6)"
+    start, message = GRID, "exact: this map keeps both angles of finite quads (B6)"
+    if choice.map == "exp":
+        start = GRID.replace("{edge}", "{edge}, kappa=1")
+    if choice.map in ("inverse", "moebius"):
+        message = (
+            "conformal image: the angles are those of a smooth net, up to the square of the edge"
+        )
+    return Recipe("conformal", start, f"conformal.quads({MAPS[choice.map]})", message)
 
 
 def _isothermal(choice):
+    rooms, start, points = "mesh, conformal, surfaces", GRID, POINTS[choice.surface]
+    message = "sampled from a smooth net: off by about the square of the edge"
     if choice.surface == "rolled":
-        V, words = _rolled(choice)
-    else:
-        z = _sheared(choice, choice.surface)
-        sphere = choice.surface == "sphere"
-        shape = surfaces.SPHERE if sphere else surfaces.conjugate(radians(choice.bend))
-        V = shape.point(z.real, z.imag)
-        words = "sampled from a smooth net: off by about the square of the edge"
+        rooms, start = "mesh, developable", ROLLED
+        message = "exact: both angles hold on the bent sheet"
     if choice.moebius:
-        V = moebius.apply(moebius.inversion((choice.px, choice.py, choice.pz)), V)
-        words = "sampled from a smooth net, then inverted in a sphere around the pole"
-    return Made(V.reshape(-1, 3), mesh.grid_quads(choice.m, choice.n), words)
+        rooms += ", moebius"
+        points = "moebius.apply(moebius.inversion(({px}, {py}, {pz})), " + points + ")"
+        message = "sampled from a smooth net, then inverted in a sphere around the pole"
+    return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
 
 
-def _rolled(choice):
-    angles = radians(choice.theta), radians(choice.theta0)
-    origin, edge = grid(choice, "rolled")
-    curvature = bending(choice)
-    z = developable.rolled_grid(*angles, choice.m, choice.n, curvature, origin, edge)
-    return developable.roll(z, curvature), "exact: both angles hold on the bent sheet"
+def _revolution(_):
+    return Recipe(
+        "loxodrome, surfaces",
+        "profile = surfaces.spline_profile({points})",
+        "loxodrome.web(profile, {theta}, {theta0}, {m}, {n})",
+        "exact: {0.message}",
+        "V, Q = {net}[:2]",
+    )
 
 
-def bending(choice):
-    """The curvature that bends the sheet by the chosen angle from one side to the other."""
-    _, edge = grid(choice, "rolled")
-    mu = parallelogram.ratios(radians(choice.theta), radians(choice.theta0))[1]
-    width = edge * (choice.m + choice.n * abs(cmath.exp(1j * radians(choice.theta0)).real) / mu)
-    return _digits(radians(choice.bend) / width)
+def _freeform(_):
+    return Recipe(
+        "reference, solver, surfaces",
+        "V, Q = surfaces.freeform_patch({m}, {n})",
+        "solver.optimize(V, Q, {theta}, {theta0}, reference=reference.mesh(V, Q){callback})",
+        "{0.message}",
+        "V = {net}.V",
+    )
 
 
-def _revolution(choice):
-    profile = surfaces.spline_profile(list(zip(choice.radii, HEIGHTS, strict=True)))
-    angles = radians(choice.theta), radians(choice.theta0)
-    net = loxodrome.web(profile, *angles, choice.m, choice.n)
-    return Made(net.V, net.Q, f"exact: {net.message}")
+def _cover(choice):
+    room, surface = "io", "io.surface({path})"
+    if choice.source != "file":
+        room, surface = "examples", f"examples.{examples.SURFACES[choice.source].__name__}()"
+    options = "count={quads}, direction={direction}{callback}"
+    return Recipe(
+        f"design, {room}",
+        f"surface = {surface}",
+        "design.cover(*surface[:2], {theta}, {theta0}, " + options + ")",
+        "{0.report.message}",
+        "V, Q = {net}[:2]",
+    )
 
 
-# --- the same in Python -------------------------------------------------------------------
-
-
-def code(choice, path="surface.obj"):
-    """Three lines of Python that make the net: V and Q.
-
-    path: of the surface's file.
-    """
-    angles = f"np.radians({_exact_text(choice.theta)}), np.radians({_exact_text(choice.theta0)})"
-    writers = {
-        "plane": _plane_code,
-        "isothermal": _isothermal_code,
-        "revolution": _revolution_code,
-        "freeform": _freeform_code,
-        "cover": _cover_code,
-    }
-    return "\n".join(writers[choice.kind](choice, angles, path))
-
-
-def _exact_text(x):
-    """A number with all its digits, whole ones without the point."""
-    return repr(x).removesuffix(".0")
-
-
-def _grid_code(choice, angles, name):
-    origin, edge = grid(choice, name)
-    kappa = f", kappa={KAPPA[name]}" if name in KAPPA else ""
-    sizes = f"{choice.m}, {choice.n}, {origin}, {edge}"
-    return f"z = conformal.sheared_grid({angles}, {sizes}{kappa})"
-
-
-def _plane_code(choice, angles, path):
-    pole = complex(choice.px, choice.py)
-    image = {
-        "identity": "z",
-        "square": "z**2",
-        "inverse": "1 / z",
-        "exp": "np.exp(z)",
-        "moebius": f"conformal.moebius([[0, 1], [1, {-pole}]], z)",
-    }[choice.map]
-    yield "import numpy as np; from inetlib import conformal"
-    yield _grid_code(choice, angles, choice.map)
-    yield f"V, Q = conformal.quads({image})"
-
-
-def _isothermal_code(choice, angles, path):
-    quads = f"mesh.grid_quads({choice.m}, {choice.n})"
-    if choice.surface == "rolled":
-        origin, edge = grid(choice, "rolled")
-        curvature = bending(choice)
-        rooms, points = "developable", f"developable.roll(z, {curvature})"
-        sizes = f"{choice.m}, {choice.n}, {curvature}, {origin}, {edge}"
-        line = f"z = developable.rolled_grid({angles}, {sizes})"
-    else:
-        line, rooms = _grid_code(choice, angles, choice.surface), "conformal, surfaces"
-        bend = f"conjugate(np.radians({_exact_text(choice.bend)}))"
-        shape = "SPHERE" if choice.surface == "sphere" else bend
-        points = f"surfaces.{shape}.point(z.real, z.imag)"
-    if choice.moebius:
-        pole = f"{choice.px}, {choice.py}, {choice.pz}"
-        points, rooms = f"moebius.apply(moebius.inversion(({pole})), {points})", rooms + ", moebius"
-    yield f"import numpy as np; from inetlib import mesh, {rooms}"
-    yield line
-    yield f"V, Q = {points}.reshape(-1, 3), {quads}"
-
-
-def _revolution_code(choice, angles, path):
-    points = [(r, h) for r, h in zip(choice.radii, HEIGHTS, strict=True)]
-    yield "import numpy as np; from inetlib import loxodrome, surfaces"
-    yield f"profile = surfaces.spline_profile({points})"
-    yield f"V, Q = loxodrome.web(profile, {angles}, {choice.m}, {choice.n})[:2]"
-
-
-def _freeform_code(choice, angles, path):
-    yield "import numpy as np; from inetlib import reference, solver, surfaces"
-    yield f"V, Q = surfaces.freeform_patch({choice.m}, {choice.n})"
-    yield f"V = solver.optimize(V, Q, {angles}, reference=reference.mesh(V, Q)).V"
-
-
-def _cover_code(choice, angles, path):
-    given = f"examples.{EXAMPLES[choice.source]}()" if choice.source != "file" else ""
-    room = "examples" if given else "io"
-    direction = f"np.radians({_exact_text(choice.direction)})"
-    yield f"import numpy as np; from inetlib import design, {room}"
-    yield f"surface = {given or f'io.surface({str(path)!r})'}"
-    options = f"count={choice.quads}, direction={direction}"
-    yield f"V, Q = design.cover(*surface[:2], {angles}, {options})[:2]"
+RECIPES = {
+    "plane": _plane,
+    "isothermal": _isothermal,
+    "revolution": _revolution,
+    "freeform": _freeform,
+    "cover": _cover,
+}

@@ -9,6 +9,8 @@ import threading
 
 import numpy as np
 
+from .. import mesh
+from .. import view as shaded
 from . import choices
 from .session import Session
 
@@ -54,7 +56,9 @@ def show(height=640, live=None, **values):
         raise ValueError(session.problem)
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
     if not (person() if live is None else live):
-        return still(picture, width=640)
+        from IPython.display import Image
+
+        return Image(data=picture, format="png", width=640)
     address = f"{_address(_open_door().port)}index.html?{choices.link(session.choice)}"
     return Live(address, picture, height)
 
@@ -76,11 +80,21 @@ def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
     return Live(f"{_address(door.port)}net/{key}/index.html{query}", picture, height)
 
 
-def still(picture, width=None):
-    """A still IPython Image of PNG bytes, shown so many pixels wide."""
-    from IPython.display import Image
+def turn(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None):
+    """The shaded `view.scene` of a net in a notebook, to be turned by hand, or as a still picture.
 
-    return Image(data=picture, format="png", width=width)
+    live: True, False, or by default True where a person runs the notebook: then the net is a
+    page that the browser draws, with the families that have curves, in its own colours and
+    widths, and `show_net` has the picture.  A notebook that a tool runs keeps the picture.
+    """
+    drawn = V, Q, families, colours, width, view
+    if not (person() if live is None else live):
+        return shaded.show(*drawn, live=False)
+    names = mesh.Families._fields
+    if families is not None:
+        names = [name for name in names if len(getattr(families, name))]
+    picture = shaded.png(*drawn) if shaded.available()[0] else None
+    return show_net(V, Q, names, view, picture=picture)
 
 
 def person():

@@ -47,9 +47,6 @@ def build(server, plotter, given=False):
     return view
 
 
-# --- the bar ------------------------------------------------------------------------------
-
-
 def _bar(given):
     with v3.VAppBar(density="compact", elevation=1, height=46):
         v3.VAppBarTitle("Isogonal nets")
@@ -79,30 +76,19 @@ def _save_items():
             words = "picture" if suffix in MIME else "net with its curves"
             words = "net" if suffix in (".ply", ".off") else words
             mime = MIME.get(suffix, "application/octet-stream")
-            v3.VListItem(
-                title=f"{suffix[1:].upper()}, {words}",
-                subtitle=f"needs the package {package}" if package else None,
-                disabled=bool(package),
-                click=f"utils.get('inet').save('{suffix}', '{mime}')",
-            )
-
-
-# --- the view -----------------------------------------------------------------------------
+            about = {"title": f"{suffix[1:].upper()}, {words}", "disabled": bool(package)}
+            if package:
+                about["subtitle"] = f"needs the package {package}"
+            v3.VListItem(click=f"utils.get('inet').save('{suffix}', '{mime}')", **about)
 
 
 def _view(plotter):
     with html.Div(classes="ex-middle"):
-        with html.Div(
-            classes="ex-view",
-            tabindex="0",
-            aria_label="the net; arrow keys turn it, plus and minus zoom, F fits it",
-            keydown="utils.get('inet').keys($event)",
-        ):
-            view = VtkLocalView(
-                plotter.render_window,
-                ref="view",
-                after_scene_loaded="utils.get('inet')?.loaded()",
-            )
+        words = "the net; arrow keys turn it, plus and minus zoom, F fits it"
+        keys = {"tabindex": "0", "keydown": "utils.get('inet').keys($event)"}
+        with html.Div(classes="ex-view", aria_label=words, **keys):
+            loaded = "utils.get('inet')?.loaded()"
+            view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
             _tools()
         _status()
     return view
@@ -115,73 +101,46 @@ def _tools():
             ("mdi-arrow-down-circle-outline", "From above", "from_above"),
             ("mdi-arrow-right-circle-outline", "From the side", "from_side"),
         ):
-            v3.VBtn(
-                icon=icon,
-                size="x-small",
-                title=words,
-                aria_label=words,
-                classes=f"in-{call}",
-                click=f"trigger('{call}', [utils.get('inet').place()])",
-            )
+            about = {"title": words, "aria_label": words, "classes": f"in-{call}"}
+            click = f"trigger('{call}', [utils.get('inet').place()])"
+            v3.VBtn(icon=icon, size="x-small", click=click, **about)
 
 
 def _status():
     """One line below the view: why there is no net, or how far the search is, or on the net."""
-    button = {"size": "x-small", "color": "primary", "classes": "text-none ml-2"}
+    small = {"size": "x-small", "color": "primary"}
     with html.Div(classes="ex-status", role="status"):
-        html.Div(
-            "{{ problem }}", v_if=("problem && !searching",), classes="text-warning out-problem"
-        )
+        shown = {"v_if": ("problem && !searching",), "classes": "text-warning out-problem"}
+        html.Div("{{ problem }}", **shown)
         with html.Div(v_if=("searching",)):
             v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
             html.Span("{{ progress }}", classes="out-progress ml-2")
-            v3.VBtn("Stop", click="trigger('stop')", **_with(button, "in-stop"))
+            v3.VBtn("Stop", click="trigger('stop')", classes="text-none ml-2 in-stop", **small)
         with html.Div(v_if=("!searching && (message || can_search)",)):
             html.Span("{{ message }}", v_if=("!problem",), classes="out-message")
-            v3.VBtn(
-                "Run again", v_if=("can_search",), click="trigger('run')", **_with(button, "in-run")
-            )
-
-
-def _with(options, name):
-    return options | {"classes": f"{options['classes']} {name}"}
+            again = {"v_if": ("can_search",), "classes": "text-none ml-2 in-run"}
+            v3.VBtn("Run again", click="trigger('run')", **again, **small)
 
 
 def _dialogs():
     with _dialog("code_open", "The same net in Python"):
         html.Pre("{{ code }}", classes="ex-code")
         html.Div("V: vertices, Q: quads; angles are radians in Python.", classes="ex-note mt-2")
-        v3.VBtn(
-            "Copy",
-            size="small",
-            classes="mt-3",
-            color="primary",
-            click="utils.get('inet').copy(code, 'code')",
-        )
+        click = "utils.get('inet').copy(code, 'code')"
+        v3.VBtn("Copy", size="small", classes="mt-3", color="primary", click=click)
     with _dialog("help_open", "How to use this page"):
         for title, words in HELP.items():
             html.H4(title, classes="mt-2")
             html.P(words, classes="text-body-2")
-    v3.VSnackbar(
-        "{{ alert }}",
-        model_value=("!!alert",),
-        update_modelValue="alert = $event ? alert : ''",
-        timeout=7000,
-        location="top",
-        classes="out-alert",
-    )
+    gone = {"model_value": ("!!alert",), "update_modelValue": "alert = $event ? alert : ''"}
+    v3.VSnackbar("{{ alert }}", timeout=7000, location="top", classes="out-alert", **gone)
 
 
 @contextmanager
 def _dialog(name, title):
     with v3.VDialog(v_model=(name,), max_width=760), v3.VCard(title=title):
-        v3.VBtn(
-            icon="mdi-close",
-            variant="text",
-            size="small",
-            aria_label="close",
-            style="position: absolute; right: 0.5rem; top: 0.5rem",
-            click=f"{name} = false",
-        )
+        about = {"icon": "mdi-close", "variant": "text", "size": "small", "aria_label": "close"}
+        place = "position: absolute; right: 0.5rem; top: 0.5rem"
+        v3.VBtn(style=place, click=f"{name} = false", **about)
         with v3.VCardText():
             yield

@@ -5,64 +5,20 @@ from trame.widgets import vuetify3 as v3
 
 from . import choices, look
 
-COMPACT = {"hide_details": True, "density": "compact", "variant": "outlined"}
-FAMILIES = {
-    "u": "u-curves",
-    "v": "v-curves",
-    "d1": "diagonals d\u2081",
-    "d2": "diagonals d\u2082",
+SMALL = {"hide_details": True, "density": "compact"}
+FIELD = SMALL | {"variant": "outlined"}
+SWITCH = SMALL | {"color": "primary"}
+SLIDER = SWITCH | {"thumb_size": 15, "track_size": 3}
+FAMILIES = {"u": "u-curves", "v": "v-curves"}
+FAMILIES |= {"d1": "diagonals d\u2081", "d2": "diagonals d\u2082"}
+LOOKS = {
+    "parallelograms": "inscribed parallelograms",
+    "shade": "shade faces by their deviation",
 }
 LAM = "\u03bb = |d\u2082|/|d\u2081| = {{ numbers.lam }}"
 MU = "\u03bc = |m\u2081\u2083|/|m\u2082\u2084| = {{ numbers.mu }}"
 STALE = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "
 STALE += "\u03b8\u2080 = {{ numbers.theta0 }}\u00b0"
-
-
-def _select(name, label, condition=None):
-    items = [{"title": words, "value": key} for key, words in choices.OPTIONS[name].items()]
-    extra = {"v_show": condition} if condition else {}
-    v3.VSelect(
-        v_model=(name,),
-        items=(f"{name}_items", items),
-        label=label,
-        classes=f"my-2 in-{name}",
-        **COMPACT,
-        **extra,
-    )
-
-
-def _number(name, label, low=None, high=None, condition=None, disabled=None):
-    """A label, a slider and a field for the same value."""
-    bounds = choices.RANGES[name]
-    low, high = bounds.low if low is None else low, bounds.high if high is None else high
-    off = {"disabled": (disabled,)} if disabled else {}
-    with html.Div(classes=f"ex-row in-{name}", **({"v_show": condition} if condition else {})):
-        html.Label(label, v_pre=True)
-        _slider(f"{name}", label, low, high, bounds.step, v_model=(name,), **off)
-        v3.VTextField(
-            model_value=(f"Number(Number({name}).toPrecision(10))",),
-            change=f"{name} = $event.target.value",
-            suffix=bounds.unit or None,
-            inputmode="decimal",
-            aria_label=f"{label}, value",
-            **COMPACT,
-            **off,
-        )
-
-
-def _slider(name, label, low, high, step, **options):
-    v3.VSlider(
-        min=(f"{low}",) if not isinstance(low, str) else (low,),
-        max=(f"{high}",) if not isinstance(high, str) else (high,),
-        step=step,
-        hide_details=True,
-        density="compact",
-        thumb_size=15,
-        track_size=3,
-        color="primary",
-        aria_label=label,
-        **options,
-    )
 
 
 def controls(given=False):
@@ -74,6 +30,25 @@ def controls(given=False):
         _bent()
         _profile()
     _shown()
+
+
+def _select(name, label, condition="true"):
+    items = [{"title": words, "value": key} for key, words in choices.OPTIONS[name].items()]
+    about = {"label": label, "v_show": condition, "classes": f"my-2 in-{name}"}
+    v3.VSelect(v_model=(name,), items=(f"{name}_items", items), **about, **FIELD)
+
+
+def _number(name, label, low=None, high=None, condition="true"):
+    """A label, a slider and a field for the same value."""
+    bounds = choices.RANGES[name]
+    ends = {"min": (f"{bounds.low if low is None else low}",)}
+    ends |= {"max": (f"{bounds.high if high is None else high}",), "step": bounds.step}
+    field = {"model_value": (f"Number(Number({name}).toPrecision(10))",)}
+    field |= {"change": f"{name} = $event.target.value", "suffix": bounds.unit or None}
+    with html.Div(classes=f"ex-row in-{name}", v_show=condition):
+        html.Label(label, v_pre=True)
+        v3.VSlider(v_model=(name,), aria_label=label, **ends, **SLIDER)
+        v3.VTextField(inputmode="decimal", aria_label=f"{label}, value", **field, **FIELD)
 
 
 def _kind():
@@ -88,14 +63,8 @@ def _angles():
     html.H2("Angles")
     _number("theta", "\u03b8", 1, 179)
     _number("theta0", "\u03b8\u2080", 1, 179)
-    v3.VSwitch(
-        v_model=("lock",),
-        label="lock \u03b8 = \u03b8\u2080 (\u03bb = \u03bc)",
-        color="primary",
-        classes="in-lock",
-        hide_details=True,
-        density="compact",
-    )
+    words = "lock \u03b8 = \u03b8\u2080 (\u03bb = \u03bc)"
+    v3.VSwitch(v_model=("lock",), label=words, classes="in-lock", **SWITCH)
 
 
 def _sizes():
@@ -110,15 +79,8 @@ def _bent():
     """The angle of bending, and the pole of a Moebius transformation."""
     bent = "kind == 'isothermal' && surface != 'sphere'"
     _number("bend", "bending", high="surface == 'rolled' ? 350 : 90", condition=bent)
-    v3.VSwitch(
-        v_model=("moebius",),
-        v_show="kind == 'isothermal'",
-        label="M\u00f6bius image",
-        color="primary",
-        classes="in-moebius",
-        hide_details=True,
-        density="compact",
-    )
+    about = {"label": "M\u00f6bius image", "v_show": "kind == 'isothermal'"}
+    v3.VSwitch(v_model=("moebius",), classes="in-moebius", **about, **SWITCH)
     inverted = "(kind == 'isothermal' && moebius)"
     pole = f"{inverted} || (kind == 'plane' && map == 'moebius')"
     for name, condition in (("px", pole), ("py", pole), ("pz", inverted)):
@@ -130,13 +92,8 @@ def _profile():
         html.H2("Profile")
         with html.Div(classes="d-flex ga-1 mb-1"):
             for name, radii in choices.PROFILES.items():
-                v3.VBtn(
-                    name,
-                    size="x-small",
-                    variant="tonal",
-                    classes="text-none px-1 flex-grow-1",
-                    click=f"radii = {list(radii)}",
-                )
+                about = {"classes": "text-none px-1 flex-grow-1", "click": f"radii = {list(radii)}"}
+                v3.VBtn(name, size="x-small", variant="tonal", **about)
         with html.Div(classes="ex-profile"):
             html.Div(v_html="profile_svg", classes="ex-plate")
             with html.Div():
@@ -147,53 +104,25 @@ def _profile():
 def _radius(k):
     """One radius of the profile: a slider and a field, the topmost first."""
     new = f"radii = radii.map((r, i) => i == {k} ? %s : r)"
-    bounds = choices.RANGES["radius"]
+    low, _, step = choices.RANGES["radius"][:3]
     label = f"radius at height {choices.HEIGHTS[k]:g}"
+    ends = {"min": (f"{low}",), "max": ("1.6",), "step": step, "aria_label": label}
+    field = {"inputmode": "decimal", "aria_label": f"{label}, value"}
+    value = (f"radii[{k}]",)
     with html.Div(classes=f"ex-row in-radius{k}"):
-        _slider(
-            "radius",
-            label,
-            bounds.low,
-            1.6,
-            bounds.step,
-            model_value=(f"radii[{k}]",),
-            update_modelValue=new % "$event",
-        )
-        v3.VTextField(
-            model_value=(f"radii[{k}]",),
-            change=new % "$event.target.value",
-            inputmode="decimal",
-            aria_label=f"{label}, value",
-            **COMPACT,
-        )
+        v3.VSlider(model_value=value, update_modelValue=new % "$event", **ends, **SLIDER)
+        v3.VTextField(model_value=value, change=new % "$event.target.value", **field, **FIELD)
 
 
 def _shown():
     html.H2("Show")
     with html.Div(style="display: grid; grid-template-columns: 1fr 1fr"):
         for name, words in FAMILIES.items():
-            v3.VCheckbox(
-                v_model=("families",),
-                value=name,
-                label=words,
-                color=(f"colours.{name}",),
-                base_color=(f"colours.{name}",),
-                hide_details=True,
-                density="compact",
-                classes=f"in-{name}",
-            )
-    for name, words in (
-        ("parallelograms", "inscribed parallelograms"),
-        ("shade", "shade faces by their deviation"),
-    ):
-        v3.VCheckbox(
-            v_model=(name,),
-            label=words,
-            color="primary",
-            hide_details=True,
-            density="compact",
-            classes=f"in-{name}",
-        )
+            colour = {"color": (f"colours.{name}",), "base_color": (f"colours.{name}",)}
+            about = {"value": name, "label": words, "classes": f"in-{name}"}
+            v3.VCheckbox(v_model=("families",), **about, **colour, **SMALL)
+    for name, words in LOOKS.items():
+        v3.VCheckbox(v_model=(name,), label=words, classes=f"in-{name}", **SWITCH)
     with html.Div(v_show="shade", classes="ex-scale"):
         for colour, words in look.scale():
             with html.Div():
@@ -224,10 +153,6 @@ def numbers():
         with html.Tr():
             html.Td("medial lines")
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
-    html.Div(
-        STALE,
-        v_show="problem",
-        classes="ex-note text-warning",
-    )
+    html.Div(STALE, v_show="problem", classes="ex-note text-warning")
     html.H2("Deviations, face by face")
     html.Div(v_html="histogram_svg", classes="ex-plate out-histogram")

@@ -23,7 +23,7 @@ class Scene:
     """
 
     def __init__(self):
-        pyvista = view._pyvista()
+        pyvista = view.pyvista_module()
         self.plotter = pyvista.Plotter(off_screen=True, lighting=None)
         self.plotter.add_light(pyvista.Light(light_type="headlight"))
         corner = np.eye(3)
@@ -74,7 +74,7 @@ class Scene:
 
         azimuth, elevation: degrees; aspect: width / height of the window.
         """
-        view._aim(self.plotter.camera, V, *np.radians([azimuth, elevation]), aspect)
+        view.aim(self.plotter.camera, V, *np.radians([azimuth, elevation]), aspect)
         return self.plotter.camera
 
 

@@ -41,8 +41,6 @@ class Door:
         """Listen: the port.  port None: the usual one, or the next that is free; 0: any.
 
         OSError when the port is taken.
-
-        Paper: Sec. 3-6 (explorer).
         """
         application = web.Application(middlewares=[self._guard])
         pages = App("pages")
@@ -74,10 +72,7 @@ class Door:
         return self.port
 
     async def close(self):
-        """End all tabs, and listen no more.
-
-        Paper: Sec. 3-6 (explorer).
-        """
+        """End all tabs, and listen no more."""
         for app, socket in list(self.tabs):
             app.session.stop()
             await socket.close()

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import io, measure, mesh, parallelogram, paths, plot
+from .. import io, measure, mesh, parallelogram, plot
 from . import choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
@@ -76,7 +76,7 @@ class Session:
         self.stop()
         self.run = None
         if not self.given:
-            self._settle(self.choice, *_try(lambda: nets.construct(self.choice)))
+            self._settle(self.choice, *_try(lambda: nets.make(self.choice)))
 
     def _settle(self, choice, made, problem):
         self.problem = problem
@@ -109,7 +109,7 @@ class Session:
                 seen(V, Q, self.steps)
             return not run.stopped
 
-        found = _try(lambda: nets.find(run.choice, self.surface, after))
+        found = _try(lambda: nets.make(run.choice, self.surface, after))
         if run is self.run:
             self._settle(run.choice, *found)
             self.run = None
@@ -191,5 +191,5 @@ def _try(make):
 
 def missing(suffix):
     """The package that a file with this suffix needs and that is not installed, or ""."""
-    package = paths.PACKAGES.get(suffix, "")
+    package = io.PACKAGES.get(suffix, "")
     return package if package and importlib.util.find_spec(package) is None else ""

@@ -1,52 +1,50 @@
 """Reading surfaces and nets from files, and writing nets for other programs.
 
-                 quads   float64   curves   needs
-    .obj          yes      yes      yes      -
-    .ply          yes      yes      no       -
-    .off          yes      yes      no       -
-    .vtp          yes      yes      yes      the extra `view` (VTK)
-    .glb          no       no       yes      -          float32 and triangles, by the format
-    .stl          no       no       -        -          read only
-    .dxf          yes      yes      yes      the extra `cad` (ezdxf)      written only
-    .3dm          yes      yes      yes      the extra `cad` (rhino3dm)   written only
-
-Coordinates come back bit by bit where the table says float64 (from OBJ and OFF too: 17 digits
-where they are needed), and so does the order of vertices, faces and corners: the labels
-v1 ... v4 are kept.  Errors about a file are ValueErrors of one sentence that starts with its
-name; a missing package is an ImportError that says what to install.
+`FORMATS` says what is read and written.  Coordinates are kept bit by bit (GLB and STL have
+float32 and triangles only), and so is the order of vertices, faces and corners: the labels
+stay.  What is wrong with a file is a ValueError of one sentence that starts with its name; a
+missing package is an ImportError that says what to install.
 """
 
+import importlib.util
+import os
+from collections.abc import Callable, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import files, mesh, repair
-from .binary import read_ply, read_stl, write_ply
-from .exchange import read_vtp, write_3dm, write_dxf, write_vtp
-from .glb import read_glb, write_glb
-from .text import read_obj, read_off, write_obj, write_off
+from .. import files, mesh
+from . import binary, exchange, glb, text
 
-READERS = {
-    ".obj": read_obj,
-    ".ply": read_ply,
-    ".off": read_off,
-    ".stl": read_stl,
-    ".vtp": read_vtp,
-    ".glb": read_glb,
+
+class Format(NamedTuple):
+    """How a kind of file is read and written, if at all; the extra of inetlib has the package."""
+
+    read: Callable | None = None
+    write: Callable | None = None
+    curves: bool = False
+    package: str = ""
+    extra: str = ""
+
+
+FORMATS = {
+    ".obj": Format(text.read_obj, text.write_obj, curves=True),
+    ".ply": Format(binary.read_ply, binary.write_ply),
+    ".off": Format(text.read_off, text.write_off),
+    ".stl": Format(binary.read_stl),
+    ".vtp": Format(exchange.read_vtp, exchange.write_vtp, True, "pyvista", "view"),
+    ".glb": Format(glb.read_glb, glb.write_glb, curves=True),
+    ".dxf": Format(None, exchange.write_dxf, True, "ezdxf", "cad"),
+    ".3dm": Format(None, exchange.write_3dm, True, "rhino3dm", "cad"),
 }
-WRITERS = {
-    ".obj": write_obj,
-    ".ply": write_ply,
-    ".off": write_off,
-    ".vtp": write_vtp,
-    ".glb": write_glb,
-    ".dxf": write_dxf,
-    ".3dm": write_3dm,
-}
+READERS = [suffix for suffix, known in FORMATS.items() if known.read]
+WRITERS = [suffix for suffix, known in FORMATS.items() if known.write]
+WITH_CURVES = [suffix for suffix, known in FORMATS.items() if known.curves]
+PACKAGES = {suffix: known.package for suffix, known in FORMATS.items() if known.package}
+SOUPS = ".stl", ".glb"  # here a point is said once a triangle
 TOO_FAR = 1e100  # products of such coordinates would overflow
-WITH_CURVES = ".obj", ".vtp", ".glb", ".dxf", ".3dm"
 
 
 class Surface(NamedTuple):
@@ -54,7 +52,7 @@ class Surface(NamedTuple):
 
     V: np.ndarray
     F: np.ndarray
-    repaired: list
+    repaired: list[str]
 
 
 class Net(NamedTuple):
@@ -62,93 +60,87 @@ class Net(NamedTuple):
 
     V: np.ndarray
     Q: np.ndarray
-    polygons: list
+    polygons: list[np.ndarray]
 
 
-# --- reading ------------------------------------------------------------------------------
-
-
-def read(path):
-    """The mesh in a file, as it is: V (n, 3) float64 and F.
+def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
+    """The mesh in a file, as it is: V (n, 3) float64 and F, counted from 0.
 
     F is int64, (f, 3) or (f, 4) when all faces are triangles or all are quads, else a list
-    of lists of indices.  Suffixes: .obj .ply .off .stl .vtp .glb.  STL and GLB files say
-    their points once a triangle: equal ones are returned as one vertex.  ValueError when
-    the file is missing, empty, broken, of another kind than its suffix says, has no faces,
-    an index out of range or a coordinate that is NaN, infinite or beyond 1e100.
+    of lists.  Equal points of STL and GLB files are one vertex.  ValueError when the file is
+    missing, empty, broken, of another kind than its suffix says, without faces, or has an
+    index out of range or a coordinate that is NaN, infinite or beyond 1e100.
     """
     path = Path(path)
-    reader = _by_suffix(READERS, path, "read")
-    if path.is_dir():
-        raise ValueError(f"{path} is a directory: a file is wanted")
-    if not path.is_file():
-        raise ValueError(f"{path}: there is no such file")
-    if not path.stat().st_size:
-        raise ValueError(f"{path}: the file is empty")
-    with _named(path):
-        return _arrays(*reader(path))
+    known = _format(path, READERS, "read")
+    with _named(path), np.errstate(all="ignore"):
+        if not path.is_file():
+            raise ValueError("a directory, no file" if path.is_dir() else "there is no such file")
+        if not path.stat().st_size:
+            raise ValueError("the file is empty")
+        V, F = _checked(*known.read(path))
+    if path.suffix.lower() in SOUPS:
+        from ..repair import weld
+
+        return weld(V, F)
+    return V, F
 
 
-def surface(path, merge=True):
-    """The file's mesh as a reference surface of triangles: `Surface(V, F, repaired)`.
+def surface(path: str | Path, merge: bool = True) -> Surface:
+    """The file's mesh as a reference surface of triangles, see `repair.manifold`.
 
-    Polygons are cut into triangles; duplicate vertices (within 1e-6 of the bounding box) are
-    merged where the surface stays a manifold; collapsed and double triangles and unused
-    vertices go; triangles are oriented alike; `repaired` says so, a sentence each.  With
-    merge=False duplicates stay: a surface that was cut open on purpose stays open.
-    ValueError as in `read`, for edges of more than two faces, vertices with two fans,
-    one-sided surfaces and triangles without area; vertex numbers count from 0.
+    With merge=False duplicate vertices stay: what was cut open on purpose stays open.
+    ValueError as in `read`, and for what is no surface.
     """
-    path = Path(path)
     V, F = read(path)
+    from ..repair import manifold
+
     with _named(path):
-        V, F, repaired = repair.clean(V, F, merge)
-    if path.suffix.lower() in (".stl", ".glb"):
+        V, F, repaired = manifold(V, F, merge)
+    if Path(path).suffix.lower() in SOUPS:
         repaired = ["corners of triangles at equal points were read as one vertex", *repaired]
     return Surface(V, F, repaired)
 
 
-def net(path):
-    """The file's mesh as a net: `Net(V, Q, polygons)`, everything in the order of the file.
+def net(path: str | Path) -> Net:
+    """The file's mesh as a net, everything in the order of the file.
 
     Faces with three, five or more corners go to `polygons`.  ValueError as in `read`, when
     no face is a quad, and when a face uses a vertex twice.  The labels are those of the file:
     see `mesh.is_labelled`, `mesh.label`.
     """
     V, F = read(path)
+    Q, others = F, []
     if isinstance(F, list):
-        Q = np.array([face for face in F if len(face) == 4], dtype=np.int64).reshape(-1, 4)
+        Q = np.array([face for face in F if len(face) == 4], dtype=np.int64)
         others = [np.array(face) for face in F if len(face) != 4]
-    else:
-        Q, others = (F, []) if F.shape[1] == 4 else (F[:0], list(F))
-    if not len(Q):
-        kind = "triangles" if all(len(face) == 3 for face in others) else "polygons"
-        raise ValueError(f"{path} holds {kind}: quads are wanted")
+    if not len(Q) or Q.shape[1] != 4:
+        raise ValueError(f"{path} holds {'polygons' if others else 'triangles'}: quads are wanted")
     with _named(path):
         return Net(*mesh.check_arrays(V, Q), others)
 
 
-def _arrays(V, F):
-    """Checked arrays: finite float64 points and faces that name them."""
+def _checked(V, F):
+    """Finite float64 points and faces that name them."""
     V = np.asarray(V, dtype=np.float64).reshape(-1, 3)
     if not len(F):
         raise ValueError("the file has no faces")
+    far = np.flatnonzero(~(np.abs(V) < TOO_FAR).all(axis=1))  # NaN too
+    if far.size:
+        raise ValueError(f"vertex {far[0]} (from 0) has a coordinate that is no usable number")
     sizes = {len(face) for face in F}
     if min(sizes) < 3:
         raise ValueError("a face has fewer than three corners")
-    good = (np.abs(V) < TOO_FAR).all(axis=1)  # false for NaN too
-    if not good.all():
-        bad = np.argmin(good)
-        raise ValueError(f"vertex {bad} (from 0) has a coordinate that is no usable number")
-    joined = np.concatenate([np.asarray(face) for face in F]) if len(sizes) > 1 else np.asarray(F)
-    if joined.dtype.kind not in "iu":
-        raise ValueError(f"the faces are of type {joined.dtype}: integers are wanted")
-    if joined.min() < 0 or joined.max() >= len(V):
-        bad = joined.min() if joined.min() < 0 else joined.max()
-        raise ValueError(f"a face names vertex {bad}, but there are 0 to {len(V) - 1}")
+    _check_indices(np.concatenate(F) if len(sizes) > 1 else np.asarray(F), len(V), "face")
     if sizes in ({3}, {4}):
-        return V, joined.astype(np.int64)
+        return V, np.asarray(F).astype(np.int64)
     return V, [[int(k) for k in face] for face in F]
+
+
+def _check_indices(indices, count, what):
+    bad = indices[~((indices >= 0) & (indices < count) & (indices % 1 == 0))]  # NaN too
+    if bad.size:
+        raise ValueError(f"a {what} names vertex {bad[0]:.15g}, but there are 0 to {count - 1}")
 
 
 @contextmanager
@@ -160,20 +152,50 @@ def _named(path):
         raise ValueError(f"{path}: {error}") from error
 
 
-def _by_suffix(table, path, verb):
-    try:
-        return table[path.suffix.lower()]
-    except KeyError:
-        known = " ".join(table)
-        what = f"the suffix {path.suffix!r}" if path.suffix else "no suffix"
-        raise ValueError(f"{path} has {what}: files to {verb} end with {known}") from None
+def _format(path, suffixes, verb):
+    """The `Format` of a path, one of those with these suffixes, its package at hand."""
+    suffix = path.suffix.lower()
+    if suffix not in suffixes:
+        what = f"the suffix {path.suffix!r}" if suffix else "no suffix"
+        raise ValueError(f"{path} has {what}: files to {verb} end with {' '.join(suffixes)}")
+    known = FORMATS[suffix]
+    if known.package and importlib.util.find_spec(known.package) is None:
+        what = f"{suffix[1:].upper()} files need the package {known.package}"
+        raise ImportError(f"{what}: pip install inetlib[{known.extra}]")
+    return known
 
 
-# --- writing ------------------------------------------------------------------------------
+def check_output(path: str | Path, curves: bool = False, force: bool = False) -> Format:
+    """The format of a file that `write` can write; else its errors, before the work begins.
+
+    >>> check_output("net.stl")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: net.stl has the suffix '.stl': files to write end with .obj .ply .off ...
+    """
+    path = Path(path)
+    known = _format(path, WRITERS, "write")
+    if curves and not known.curves:
+        raise ValueError(f"{path}: no place for curves; write one of {' '.join(WITH_CURVES)}")
+    if path.is_dir():
+        raise ValueError(f"{path} is a directory: the name of a file is wanted")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.parent}: make it first")
+    if path.exists() and not force:
+        raise FileExistsError(f"{path} exists already: --force (force=True) replaces it")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise PermissionError(f"{path}: no permission to write there")
+    return known
 
 
-def write(path, V, Q, curves=None, polygons=(), force=False):
-    """Write a net; the suffix of the path names the format: see the table of this module.
+def write(
+    path: str | Path,
+    V: np.ndarray,
+    Q: np.ndarray,
+    curves: mesh.Families | str | None = None,
+    polygons: Sequence = (),
+    force: bool = False,
+) -> None:
+    """Write a net; the suffix of the path names the format.
 
     V         (n, 3) vertices; float32 in GLB files by the format, else every bit is kept
     Q         (f, 4) quads, or triangles (f, 3); GLB cuts quads along the shorter diagonal
@@ -183,49 +205,32 @@ def write(path, V, Q, curves=None, polygons=(), force=False):
     polygons  further faces: index arrays (k,)
     force     whether to replace an existing file
 
-    The file is written beside its place and renamed when complete.  FileExistsError for an
-    existing file without `force`; ValueError for unknown suffixes, directories, a missing
-    folder, curves where the format has no place for them, and indices out of range;
-    ImportError when the package for the format is missing.
+    The file is complete or not there.  ValueError for unknown suffixes, directories, a missing
+    folder, curves in a format without them, and indices out of range; FileExistsError without
+    `force`; PermissionError; ImportError when the package for the format is missing.
     """
-    path = Path(path)
-    writer = _by_suffix(WRITERS, path, "write")
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)
-    polygons = [_indices(polygon, len(V), 3, "polygon") for polygon in polygons]
-    families = _families(curves, Q, len(V))
-    if families and path.suffix.lower() not in WITH_CURVES:
-        raise ValueError(f"{path}: no place for curves; write one of {' '.join(WITH_CURVES)}")
-    if path.is_dir():
-        raise ValueError(f"{path} is a directory: the name of a file is wanted")
-    if not path.parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.parent}")
-    if path.exists() and not force:
-        raise FileExistsError(f"{path} exists already: force=True replaces it")
-    with files.replacing(path) as new:
-        writer(new, V, Q, polygons, families)
-
-
-def _families(curves, Q, count):
-    """{family: curves} without the empty families."""
     if curves is None:
-        return {}
-    if isinstance(curves, str) and curves == "all":
+        curves = mesh.Families([], [], [], [])
+    elif isinstance(curves, str) and curves == "all":
         curves = mesh.polylines(Q)
-    if not isinstance(curves, mesh.Families):
+    elif not isinstance(curves, mesh.Families):
         raise ValueError(f'curves are a {type(curves).__name__}: mesh.Families, "all" or None')
-    found = {k: [_indices(c, count, 2, "curve") for c in f] for k, f in curves._asdict().items()}
-    return {name: family for name, family in found.items() if family}
+    families = {name: family for name, family in curves._asdict().items() if family}
+    for name, family in families.items():
+        families[name] = [_row(curve, len(V), 2, "curve") for curve in family]
+    polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
+    known = check_output(path, bool(families), force)
+    with files.replacing(path) as new:
+        known.write(new, V, Q, polygons, families)
 
 
-def _indices(given, count, least, what):
+def _row(given, count, least, what):
+    """Indices of at least so many of `count` vertices, as int64."""
     indices = np.asarray(given)
     if indices.ndim != 1 or indices.dtype.kind not in "iu" or len(indices) < least:
-        raise ValueError(
-            f"a {what} has the shape {indices.shape} and type {indices.dtype}: "
-            f"a row of at least {least} vertex indices is wanted"
-        )
-    if indices.min() < 0 or indices.max() >= count:
-        bad = indices.min() if indices.min() < 0 else indices.max()
-        raise ValueError(f"a {what} names vertex {bad}, but there are 0 to {count - 1}")
+        found = f"the shape {indices.shape} and type {indices.dtype}"
+        raise ValueError(f"a {what} has {found}: {least} or more vertex indices are wanted")
+    _check_indices(indices, count, what)
     return indices.astype(np.int64)

@@ -1,138 +1,99 @@
-"""PLY and STL: meshes as bytes (or as text; both formats come in two kinds).
-
-Readers return points and faces as arrays, or faces as lists where their sizes differ.
-"""
+"""PLY and STL: meshes as bytes (or as text; both formats come in two kinds)."""
 
 from pathlib import Path
 
 import numpy as np
 
-from ..repair import weld
-from .text import text
+from .text import decoded
 
 PLY_TYPES = {
     "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
     "float": "f4", "double": "f8", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2",
     "int32": "i4", "uint32": "u4", "float32": "f4", "float64": "f8",
 }  # fmt: skip
-PLY_ORDERS = {"ascii": None, "binary_little_endian": "<", "binary_big_endian": ">"}
-
-# --- PLY ----------------------------------------------------------------------------------
+PLY_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def read_ply(path):
+def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     """Points (n, 3) and faces of a PLY file, text or binary of either byte order."""
-    data = Path(path).read_bytes()
-    head, mark, body = data.partition(b"end_header")
-    if not data.startswith(b"ply") or not mark:
+    head, mark, body = path.read_bytes().partition(b"end_header")
+    if not head.startswith(b"ply") or not mark:
         raise ValueError("a PLY file starts with `ply` and a header that ends with `end_header`")
-    order, elements = _ply_header(head.decode("ascii", errors="replace").splitlines()[1:])
+    form, elements = _ply_header(head.decode("ascii", errors="replace").splitlines())
     body = body.partition(b"\n")[2]  # the line may end with CR LF
-    source = iter(text(body).split()) if order is None else memoryview(body)
-    points = faces = None
+    if form == "ascii":
+        body = np.array(decoded(body).split(), dtype=np.float64).tobytes()
+    runs, at = {}, 0
     for name, count, properties in elements:
-        columns, source = _ply_element(source, order, name, count, properties)
-        if name == "vertex":
-            if not {"x", "y", "z"} <= set(columns):
-                raise ValueError("the vertices have no properties x, y and z")
-            points = np.stack([columns[k].astype(np.float64) for k in "xyz"], axis=1)
-        elif name == "face":
-            faces = columns.get("vertex_indices", columns.get("vertex_index"))
-    if points is None or faces is None:
+        try:
+            runs[name], at = _ply_runs(body, at, count, properties)
+        except (ValueError, OverflowError):
+            what = f"the file ends early, or breaks off, in the element `{name}`"
+            raise ValueError(what) from None
+    if not (runs.get("vertex") and runs.get("face")):
         raise ValueError("the file has no faces: the elements `vertex` and `face` are wanted")
-    return points, faces
+    key = "vertex_indices" if "vertex_indices" in runs["face"][0].dtype.names else "vertex_index"
+    try:
+        points = [np.hstack([run[k] for k in "xyz"], dtype=np.float64) for run in runs["vertex"]]
+        faces = [run[key] for run in runs["face"]]
+    except ValueError:
+        raise ValueError(f"the vertices have no x, y and z, or the faces no {key}") from None
+    if len({part.shape[1] for part in faces}) > 1:
+        return np.concatenate(points), [face for part in faces for face in part]
+    return np.concatenate(points), np.concatenate(faces)
 
 
 def _ply_header(lines):
-    """Byte order and the elements (name, count, [(name, type, type of the count or None)])."""
-    order, elements = "", []
-    for number, line in enumerate(lines, 2):
+    """The format, and the elements (name, count, [(name, type, type of the count or None)])."""
+    form, types, elements = "", {}, []
+    for number, line in enumerate(lines[1:], 2):
         try:
             match line.split():
-                case ["format", kind, _]:
-                    order = PLY_ORDERS[kind]
-                case ["element", name, count]:
+                case ["format", "ascii" as form, _]:
+                    types = dict.fromkeys(PLY_TYPES, "f8")  # as which its text is read
+                case ["format", form, _]:
+                    types = {name: PLY_ORDERS[form] + kind for name, kind in PLY_TYPES.items()}
+                case ["element", name, count] if int(count) >= 0:
                     elements.append((name, int(count), []))
                 case ["property", "list", size, kind, name]:
-                    elements[-1][2].append((name, PLY_TYPES[kind], PLY_TYPES[size]))
+                    elements[-1][2].append((name, types[kind], types[size]))
                 case ["property", kind, name]:
-                    elements[-1][2].append((name, PLY_TYPES[kind], None))
+                    elements[-1][2].append((name, types[kind], None))
                 case ["comment" | "obj_info", *_] | []:
                     pass
                 case _:
                     raise ValueError
         except (KeyError, IndexError, ValueError):
             raise ValueError(f"line {number}: {line[:60]!r} is no line of a PLY header") from None
-    if order == "" or any(count < 0 for _, count, _ in elements):
-        raise ValueError("the PLY header names no format, or a negative number of elements")
-    return order, elements
+    return form, elements
 
 
-def _ply_element(source, order, name, count, properties):
-    """The columns {name: array, or list of arrays} of an element, and what follows it."""
-    if not properties:
-        return {}, source
-    if order is None:
-        return _ply_text(source, name, count, properties), source
-    if count == 0:
-        return {key: np.empty(0) for key, _, _ in properties}, source
-    rows = _ply_uniform(source, order, count, properties)
-    if rows is not None:
-        return {key: rows[key] for key, _, _ in properties}, source[rows.nbytes :]
-    columns, at = {key: [] for key, _, _ in properties}, 0
-    try:
-        for _ in range(count):
-            for key, kind, size in properties:
-                length = 1
-                if size:
-                    length = int(np.frombuffer(source, order + size, 1, at)[0])
-                    if length < 0:
-                        raise ValueError
-                    at += int(size[1])
-                columns[key].append(np.frombuffer(source, order + kind, length, at))
-                at += length * int(kind[1])
-    except ValueError:
-        raise ValueError(f"the file ends early, or breaks off, in the element `{name}`") from None
-    lists = {key for key, _, size in properties if size}
-    return {k: c if k in lists else np.concatenate(c) for k, c in columns.items()}, source[at:]
+def _ply_runs(body, at, count, properties):
+    """The rows of an element as structured arrays, one a run of equally long lists, and the end.
 
-
-def _ply_uniform(source, order, count, properties):
-    """The rows as one structured array when all lists are as long as in the first row, or None."""
-    fields, at = [], 0
-    try:
-        for key, kind, size in properties:
-            length = ()
+    Runs are looked for in 1, 2, 4, ... rows: all lists are as long as in the first of them.
+    """
+    runs, most = [], 1
+    while count and properties:
+        fields, counts = [], []
+        for name, kind, size in properties:
+            length = 1
             if size:
-                length = (int(np.frombuffer(source, order + size, 1, at)[0]),)
-                fields.append((f"count of {key}", order + size))
-            fields.append((key, order + kind, length))
-            at = np.dtype(fields).itemsize
-        rows = np.frombuffer(source, np.dtype(fields), count)
-    except ValueError:  # too short: lists may be shorter further on
-        return None
-    counts = [(rows[f"count of {key}"], rows[key].shape[1]) for key, _, size in properties if size]
-    return rows if all((found == length).all() for found, length in counts) else None
+                counts.append(f"count of {name}")
+                start = at + np.dtype(fields).itemsize
+                length = int(np.frombuffer(body, size, 1, start)[0])
+                fields.append((counts[-1], size))
+            fields.append((name, kind, (length,)))
+        fitting = max(1, (len(body) - at) // np.dtype(fields).itemsize)
+        rows = np.frombuffer(body, fields, min(count, most, fitting), at)
+        if not all((rows[name] == rows[name][0]).all() for name in counts):
+            rows, most = rows[:1], 0
+        runs.append(rows)
+        at, count, most = at + rows.nbytes, count - len(rows), 2 * most or 1
+    return runs, at
 
 
-def _ply_text(words, name, count, properties):
-    columns = {key: [] for key, _, _ in properties}
-    try:
-        for _ in range(count):
-            for key, kind, size in properties:
-                read = float if kind[0] == "f" else int
-                if size:
-                    columns[key].append([read(next(words)) for _ in range(int(next(words)))])
-                else:
-                    columns[key].append(read(next(words)))
-    except (StopIteration, RuntimeError):
-        raise ValueError(f"the file ends early, in the {count} rows of `{name}`") from None
-    except ValueError as error:
-        raise ValueError(f"the element `{name}` cannot be read: {error}") from None
-    return {k: columns[k] if size else np.array(columns[k]) for k, _, size in properties}
-
-
-def write_ply(path, V, Q, polygons, curves):
+def write_ply(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a binary PLY file, coordinates as `double`; it has no place for curves here."""
     size = "uchar" if all(len(polygon) < 256 for polygon in polygons) else "int"
     head = (
@@ -146,37 +107,32 @@ def write_ply(path, V, Q, polygons, curves):
     rows["count"], rows["corners"] = Q.shape[1], Q
     more = [np.array(len(p), kind).tobytes() + p.astype("<i4").tobytes() for p in polygons]
     body = [V.astype("<f8").tobytes(), rows.tobytes(), *more]
-    Path(path).write_bytes(head.encode() + b"".join(body))
+    path.write_bytes(head.encode() + b"".join(body))
 
 
-# --- STL ----------------------------------------------------------------------------------
-
-
-def read_stl(path):
-    """Points (n, 3) and triangles (f, 3) of an STL file; equal corners become one vertex."""
-    data = Path(path).read_bytes()
+def read_stl(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
+    """Corners (3 f, 3) of all triangles of an STL file, and the triangles (f, 3) themselves."""
+    data = path.read_bytes()
     count = int.from_bytes(data[80:84], "little")
     if len(data) == 84 + 50 * count:
         rows = np.frombuffer(data, [("floats", "<f4", (4, 3)), ("other", "<u2")], count, 84)
         corners = rows["floats"][:, 1:].astype(np.float64)
-    elif data.lstrip().startswith(b"solid") and b"\0" not in data:
-        corners = _stl_text(text(data))
+    elif data.lstrip()[:5].lower() == b"solid" and b"\0" not in data:
+        corners = _stl_text(decoded(data).lower().splitlines())
     else:
         raise ValueError(
             f"no STL file, or a broken one: {len(data)} bytes, and a binary file "
             f"of {count} triangles has {84 + 50 * count}"
         )
-    return weld(corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3))
+    return corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3)
 
 
 def _stl_text(lines):
-    words = [line.split() for line in lines.splitlines()]
-    closed = any(row[:1] == ["endsolid"] for row in words)
+    rows = [line.split() for line in lines]
     try:
-        points = [[float(x) for x in row[1:4]] for row in words if row[:1] == ["vertex"]]
-        corners = np.array(points, dtype=np.float64).reshape(-1, 3, 3)
+        points = np.array([row[1:4] for row in rows if row[:1] == ["vertex"]], dtype=np.float64)
+        if any("".join(row).startswith("endsolid") for row in rows):
+            return points.reshape(-1, 3, 3)
     except ValueError:
-        closed = False
-    if not closed:
-        raise ValueError("the STL text ends early or has a vertex without three coordinates")
-    return corners
+        pass
+    raise ValueError("the STL text ends early or has a vertex without three coordinates")

@@ -9,55 +9,58 @@ from pathlib import Path
 
 import numpy as np
 
-from ..repair import triangulate, weld
-
 TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
 
 
-def read_glb(path):
-    """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene; equal points become one.
+def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene.
 
     glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over.
     """
-    data = Path(path).read_bytes()
+    data = path.read_bytes()
     if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
         raise ValueError("no GLB file (binary glTF), or a broken one")
     try:
         length = int.from_bytes(data[12:16], "little")
         scene = json.loads(data[20 : 20 + length])
-        needed = scene.get("extensionsRequired", [])
-        if not needed:
-            nodes = scene["scenes"][scene.get("scene", 0)]["nodes"]
-            parts = list(_parts(scene, data[28 + length :], nodes, np.eye(4)))
+        if needed := scene.get("extensionsRequired"):
+            raise ValueError(f"it needs the extensions {needed}, which are not known here")
+        parts = list(_parts(scene, data[28 + length :], _roots(scene), np.eye(4)))
     except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
         raise ValueError(f"the GLB file is broken ({type(error).__name__}: {error})") from error
-    if needed:
-        raise ValueError(f"the GLB file needs the extensions {needed}, which are not known here")
     if not parts:
         raise ValueError("the file has no faces")
-    shifts = np.cumsum([0] + [len(points) for points, _ in parts[:-1]])
-    faces = [corners + shift for (_, corners), shift in zip(parts, shifts, strict=True)]
-    return weld(np.concatenate([points for points, _ in parts]) @ Y_UP, np.concatenate(faces))
+    points, faces = zip(*parts, strict=True)
+    shifts = np.cumsum([0, *map(len, points[:-1])])
+    faces = [corners + shift for corners, shift in zip(faces, shifts, strict=True)]
+    return np.concatenate(points) @ Y_UP, np.concatenate(faces)
+
+
+def _roots(scene):
+    """The nodes that the scene begins with: without a scene all that are no children."""
+    if "scenes" in scene:
+        return scene["scenes"][scene.get("scene", 0)]["nodes"]
+    children = {child for node in scene["nodes"] for child in node.get("children", [])}
+    return [k for k in range(len(scene["nodes"])) if k not in children]
 
 
 def _parts(scene, data, nodes, above):
     """(points, triangles) of every primitive below the nodes, moved to where the scene has it."""
     for node in (scene["nodes"][k] for k in nodes):
         place = above @ _matrix(node)
-        mesh = scene["meshes"][node["mesh"]] if "mesh" in node else {"primitives": []}
-        for part in mesh["primitives"]:
+        found = scene["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []
+        for part in found:
             if part.get("mode", 4) > 4:
                 raise ValueError("it holds strips or fans of triangles")
             if part.get("mode", 4) == 4:
                 points = _array(scene, data, part["attributes"]["POSITION"], 3)
                 corners = np.arange(len(points))
                 if "indices" in part:
-                    corners = _array(scene, data, part["indices"], 1).ravel().astype(np.int64)
+                    corners = _array(scene, data, part["indices"], 1).astype(np.int64)
                 if corners.max(initial=-1) >= len(points):
                     raise ValueError(f"there is no vertex {corners.max()}, only {len(points)}")
-                moved = points.astype(np.float64) @ place[:3, :3].T + place[:3, 3]
-                yield moved, corners.reshape(-1, 3)
+                yield points @ place[:3, :3].T + place[:3, 3], corners.reshape(-1, 3)
         yield from _parts(scene, data, node.get("children", []), place)
 
 
@@ -74,6 +77,8 @@ def _matrix(node):
 
 def _array(scene, data, number, width):
     accessor = scene["accessors"][number]
+    if "sparse" in accessor:
+        raise ValueError("it has sparse accessors, which are not known here")
     view = scene["bufferViews"][accessor["bufferView"]]
     kind = np.dtype(TYPES[accessor["componentType"]])
     start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
@@ -81,29 +86,30 @@ def _array(scene, data, number, width):
     return np.ndarray((accessor["count"], width), kind, data, start, strides)
 
 
-def write_glb(path, V, Q, polygons, curves):
+def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
 
     Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).
     """
     from ..plot import COLOURS, PALE
+    from ..repair import triangulate
 
-    triangles = triangulate(V, [*Q, *polygons])
-    ends = {k: np.concatenate([np.stack([c[:-1], c[1:]], 1) for c in f]) for k, f in curves.items()}
+    cells = {"panels": triangulate(V, [*Q, *polygons])}
+    for name, family in curves.items():
+        cells[name] = np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in family])
     points = (V @ Y_UP.T).astype("<f4")
-    blocks = [points] + [a.astype("<u4") for a in (triangles, *ends.values())]
+    blocks = [points, *(ends.astype("<u4") for ends in cells.values())]
     starts = np.cumsum([0] + [block.nbytes for block in blocks]).tolist()
-    names = ["panels", *ends]
-    kinds = [{"componentType": 5126, "type": "VEC3", "count": len(points)}]
-    kinds[0] |= {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
+    low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    kinds = [{"componentType": 5126, "type": "VEC3", "count": len(V), "min": low, "max": high}]
     kinds += [{"componentType": 5125, "type": "SCALAR", "count": b.size} for b in blocks[1:]]
     scene = {
         "asset": {"version": "2.0", "generator": "inetlib"},
         "scene": 0,
-        "scenes": [{"nodes": list(range(len(names)))}],
-        "nodes": [{"mesh": k, "name": name} for k, name in enumerate(names)],
-        "meshes": [_mesh(k, name) for k, name in enumerate(names)],
-        "materials": [_material(name, {"panels": PALE, **COLOURS}[name]) for name in names],
+        "scenes": [{"nodes": list(range(len(cells)))}],
+        "nodes": [{"mesh": k, "name": name} for k, name in enumerate(cells)],
+        "meshes": [_mesh(k, name) for k, name in enumerate(cells)],
+        "materials": [_material(name, (COLOURS | {"panels": PALE})[name]) for name in cells],
         "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],
         "bufferViews": [
             {"buffer": 0, "byteOffset": start, "byteLength": block.nbytes}
@@ -127,6 +133,6 @@ def _mesh(k, name):
 
 def _material(name, colour):
     srgb = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
-    factor = [*(srgb**2.2).round(4).tolist(), 1.0]
-    look = {"baseColorFactor": factor, "metallicFactor": 0.0, "roughnessFactor": 1.0}
+    linear = [*(srgb**2.2).round(4).tolist(), 1.0]
+    look = {"baseColorFactor": linear, "metallicFactor": 0.0, "roughnessFactor": 1.0}
     return {"name": name, "doubleSided": True, "pbrMetallicRoughness": look}

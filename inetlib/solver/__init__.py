@@ -1,18 +1,20 @@
 """Optimisation of quad meshes into isogonal nets.
 
-The work is shared: `goals` knows what is wanted, `problem` checks the input and holds the
-shape energies, `steps` and `guided` make one step of either formulation, `runs` decides
-which step comes next and judges its net by `measure`.
+`goal` knows what is wanted, `problem` checks the input and holds the shape energies,
+`residuals` are the equations, `run` and `guided` make the steps of either formulation and
+judge every net by `measure`, `sparse` solves; `grids` goes from coarse to fine.
 """
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from ..parallelogram import angles as exact_angles
-from . import goal as goals
+from ..parallelogram import check_whole
+from ..reference import Reference
 from . import guided, run
+from .goal import aim, angles, logs
 from .problem import PAPER, Weights, prepare
 
 STRIDE = np.radians(15)
@@ -21,7 +23,7 @@ STRIDE = np.radians(15)
 class NotConverged(RuntimeError):
     """A guarantee was asked for and not met; `result` holds the best net."""
 
-    def __init__(self, result):
+    def __init__(self, result: "Result"):
         super().__init__(result.message)
         self.result = result
 
@@ -29,7 +31,7 @@ class NotConverged(RuntimeError):
 class Result(NamedTuple):
     """The optimised net: V (n, 3), its ratios and angles (radians), and how it was found.
 
-    history: list of `solver.run.Step`, the first is the start; seconds: {stage: seconds}; sizes:
+    history: list of `run.Step`, the first is the start; seconds: {stage: seconds}; sizes:
     (#var, #cons) of the formulation; message: why it converged or did not.
     """
 
@@ -46,31 +48,31 @@ class Result(NamedTuple):
 
 
 def optimize(
-    V,
-    Q,
-    theta=None,
-    theta0=None,
-    lam=None,
-    mu=None,
+    V: np.ndarray,
+    Q: np.ndarray,
+    theta: float | None = None,
+    theta0: float | None = None,
+    lam: float | None = None,
+    mu: float | None = None,
     *,
-    equal=False,
-    reference=None,
-    on_surface=False,
-    formulation="ratio",
-    residual="log",
-    weights=None,
-    fixed=None,
-    mobility=None,
-    polygons=(),
-    via="mean",
-    stride=STRIDE,
-    shape_steps=2,
-    tolerance=1e-11,
-    iterations=None,
-    strict=False,
-    progress=False,
-    callback=None,
-):
+    equal: bool = False,
+    reference: Reference | None = None,
+    on_surface: bool = False,
+    formulation: str = "ratio",
+    residual: str = "log",
+    weights: Weights | None = None,
+    fixed: str | Sequence | np.ndarray | None = None,
+    mobility: np.ndarray | None = None,
+    polygons: Sequence = (),
+    via: str = "mean",
+    stride: float = STRIDE,
+    shape_steps: int = 2,
+    tolerance: float = 1e-11,
+    iterations: int | None = None,
+    strict: bool = False,
+    progress: bool = False,
+    callback: Callable | None = None,
+) -> Result:
     """The labelled mesh V (n, 3), Q (f, 4) changed into an isogonal net: a `Result`.
 
     theta, theta0 (radians), lam, mu: at most two; the rest stays free (equal: theta = theta0)
@@ -78,7 +80,7 @@ def optimize(
     formulation  "ratio": two logarithms a face (residual="quadratic": scaled squares), shape
                  steps, then smallest steps to the angles; "paper": guided projection by
                  SciPy's spsolve; "paper, splu": the same, ordered better and so faster
-    weights      `Weights` of the shape energies; `solver.problem.PAPER` unless given for "paper"
+    weights      `Weights` of the shape energies; `problem.PAPER` unless given for "paper"
     fixed        vertices that stay: numbers, mask or "boundary"; mobility: see `problem`
     polygons     corners of faces that are no quads, one sequence each
     via          "mean": by goals at most `stride` apart from the mean angles of the mesh;
@@ -93,57 +95,61 @@ def optimize(
     all nets the one with the fewest flips, then the smallest deviation, is returned.
     `converged`: all faces have their angles, none is flipped.  Bad input is a ValueError.
 
-    Paper: Sec. 6, Table 1.
+    >>> from inetlib import surfaces
+    >>> found = optimize(*surfaces.freeform_patch(8, 8), theta=1.2, theta0=1.3)
+    >>> found.converged, found.theta, round(found.lam, 6)
+    (True, 1.2, 1.291682)
+
+    Paper: Table 1.
     """
-    options = formulation, residual, via, stride, shape_steps, tolerance, iterations
-    wanted = goals.goal(theta, theta0, lam, mu, equal)
-    _check_options(*options, on_surface)
-    weights = weights or (Weights() if formulation == "ratio" else PAPER)
-    given = prepare(V, Q, wanted, weights, reference, on_surface, fixed, mobility, polygons)
-    result = _solve(given, *options, progress, callback)
+    wanted = aim(theta, theta0, lam, mu, equal)
+    ours = formulation == "ratio"
+    _check_choice("residual", residual, ("log", "quadratic"))
+    _check_choice("formulation", formulation, ("ratio", "paper", "paper, splu"))
+    _check_choice("via", via, ("mean", "jump", *run.STARTS))
+    if not (stride > 0 and tolerance > 0):
+        raise ValueError(f"stride = {stride}, tolerance = {tolerance}: positive radians are wanted")
+    if on_surface and not ours:
+        raise ValueError('on_surface=True needs formulation="ratio": the paper has no such step')
+    limit = np.inf if ours else guided.STEPS
+    if iterations is not None:
+        limit = check_whole("iterations", iterations, 0)
+    shape_steps = check_whole("shape_steps", shape_steps, 0)
+    weights = weights or (Weights() if ours else PAPER)
+    surface, still = (reference, on_surface), (fixed, mobility, polygons)
+    given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
+    log = run.Log(given, tolerance, progress, callback)
+    with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
+        for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
+            options = run.Options(via, stride * factor, shape_steps, limit)
+            if ours:
+                run.ratio(log, options)
+            else:
+                guided.run(log, options, spsolve if formulation == "paper" else None)
+            if log.done or len(log.history) > limit:
+                break
+    result = _result(log, ours)
     if strict and not result.converged:
         raise NotConverged(result)
     return result
 
 
-def _check_options(*options):
-    formulation, residual, via, stride, shape_steps, tolerance, iterations, on_surface = options
-    choices = {
-        "formulation": (formulation, ("ratio", "paper", "paper, splu")),
-        "residual": (residual, ("log", "quadratic")),
-        "via": (via, ("mean", "jump", *run.STARTS)),
-    }
-    for name, (value, allowed) in choices.items():
-        if value not in allowed:
-            raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
-    if not (stride > 0 and tolerance > 0):
-        raise ValueError(f"stride = {stride}, tolerance = {tolerance}: positive radians are wanted")
-    for name, value in (("shape_steps", shape_steps), ("iterations", iterations)):
-        if value is not None and not (value >= 0 and int(value) == value):
-            raise ValueError(f"{name} = {value}: a whole number, 0 or more, is wanted")
-    if formulation != "ratio" and on_surface:
-        raise ValueError('on_surface=True needs formulation="ratio": the paper has no such step')
+def _check_choice(name, value, allowed):
+    if value not in allowed:
+        raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
 
 
-def _solve(given, *options):
-    formulation, residual, via, stride, shape_steps, tolerance, iterations = options[:7]
-    log = run.Log(given, tolerance, *options[7:])
-    with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        if formulation != "ratio":
-            solve = spsolve if formulation == "paper" else None
-            run.paper(log, via, stride, 17 if iterations is None else iterations, solve)
-        else:
-            limit = np.inf if iterations is None else iterations
-            run.ratio(log, via, stride, shape_steps, residual == "quadratic", limit)
+def _result(log, ours):
+    given = log.given
     (flips, deviation), V, s = log.best
     good = bool(deviation <= log.tolerance and flips == 0)
-    lam, mu = (float(x) for x in np.exp(goals.logs(given.goal, s)[0]))
-    angles = (float(x) for x in exact_angles(lam, mu))
+    lam, mu = (float(x) for x in np.exp(logs(given.goal, s)[0]))
+    found = (float(x) for x in angles(given.goal, s))
     message = _message(good, log.stopped, flips, deviation, len(log.history) - 1)
     sizes = V.size + len(s), 2 * len(given.Q)
-    if formulation != "ratio":
+    if not ours:
         sizes = guided.size(given.Q, len(V), given.goal)
-    return Result(V, lam, mu, *angles, log.history, good, message, log.seconds, sizes)
+    return Result(V, lam, mu, *found, log.history, good, message, given.seconds, sizes)
 
 
 def _message(good, stopped, flips, deviation, count):

@@ -3,16 +3,17 @@
 Two equations a face, three coordinates a vertex: 3 V - 2 F degrees of freedom wherever the
 equations are independent at first order.
 
-Paper: Sec. 6.1 (beyond the paper: B8).
+Paper: B8.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from .. import mesh
-from . import residuals as constraints
-from . import sparse
+from . import residuals, sparse
 
 LARGEST = 1200  # faces, of a dense singular value decomposition
 
@@ -30,26 +31,28 @@ class Freedom(NamedTuple):
     gap: float
 
 
-def jacobian(V, Q):
+def jacobian(V: np.ndarray, Q: np.ndarray) -> csr_array:
     """The derivative of (log lam, log mu) of all faces by all coordinates: (2 f, 3 n), sparse.
 
     V: (n, 3), Q: (f, 4), labelled.  Row 2 k belongs to lam of face k, row 2 k + 1 to mu;
     column 3 i + c to the coordinate c of vertex i.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     V, Q = mesh.check_arrays(V, Q)
-    _, blocks = constraints.log_ratios(V[Q].reshape(-1, 12))
+    _, blocks = residuals.log_ratios(V[Q].reshape(-1, 12))
     return sparse.rows(blocks, sparse.coordinates(Q), V.size)
 
 
-def count(V, Q, fixed=(), tolerance=1e-9):
+def count(
+    V: np.ndarray, Q: np.ndarray, fixed: Sequence | np.ndarray = (), tolerance: float = 1e-9
+) -> Freedom:
     """The `Freedom` of the net (V, Q) when the vertices `fixed` (numbers or mask) stay.
 
     A singular value below `tolerance` of the largest counts as 0.  ValueError for meshes of
     more than 1200 faces: the decomposition is dense.
 
-    Paper: Sec. 6.1 (beyond the paper: B8).
+    Paper: B8.
     """
     if len(Q) > LARGEST:
         raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")

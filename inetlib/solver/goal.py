@@ -1,9 +1,10 @@
 """What is wanted of a net, and the way there: given angles or ratios, the rest left free.
 
 A `Goal` is a curve, a surface or a point in the plane of (log lam, log mu): what is given
-fixes part of it, and `free` numbers of freedom s remain.
+fixes part of it, and up to two numbers s, the freedom, remain.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ ALIKE = 1e-9  # radians: two given angles as close as this are meant to be the s
 
 
 class Goal(NamedTuple):
-    """kind: "angles", "theta", "theta0", "lam", "mu", "equal" or "free"; values: see `goal`.
+    """kind: "angles", "theta", "theta0", "lam", "mu", "equal" or "free"; values: see `aim`.
 
     equal: theta = theta0 is wanted in the end; the paper has fewer equations for that.
     """
@@ -26,7 +27,13 @@ class Goal(NamedTuple):
     equal: bool = False
 
 
-def goal(theta=None, theta0=None, lam=None, mu=None, equal=False):
+def aim(
+    theta: float | None = None,
+    theta0: float | None = None,
+    lam: float | None = None,
+    mu: float | None = None,
+    equal: bool = False,
+) -> Goal:
     """The `Goal` of the given numbers: angles in radians, ratios positive; None leaves free.
 
     equal: theta = theta0 wanted (lam = mu), whatever its value.  `values` holds (theta,
@@ -34,44 +41,40 @@ def goal(theta=None, theta0=None, lam=None, mu=None, equal=False):
     ValueError for numbers out of range, for more than two, and for pairs that fit no
     parallelogram or two of them.
 
+    >>> aim(lam=1, mu=1).equal, aim(theta=1.2).kind, aim(1.2, 1.3).values
+    (True, 'theta', (1.2, 1.3))
+
     Paper: Eq. (19), Eq. (20), Eq. (22).
     """
-    names = {"theta": theta, "theta0": theta0, "lam": lam, "mu": mu}
-    known = {name: _checked(name, x) for name, x in names.items() if x is not None}
+    known = {}
+    for name, x in {"theta": theta, "theta0": theta0, "lam": lam, "mu": mu}.items():
+        if x is not None:
+            angle = name.startswith("theta")
+            check = parallelogram.check_angle if angle else parallelogram.check_positive
+            known[name] = float(check(name, x))
     if equal:
         return _equal(known)
     if len(known) > 2:
         raise ValueError(f"{', '.join(known)} are given: two numbers fix the net, drop the others")
-    if len(known) < 2:
-        kind, value = next(iter(known.items()), ("free", None))
-        return Goal(kind, () if value is None else (_parameter(kind, value),))
-    theta, theta0 = _both(known)
-    if abs(theta - theta0) <= ALIKE:  # one angle, twice: lam and mu from it may differ in a bit
-        return _equal({"theta": theta})
-    return Goal("angles", (theta, theta0))
-
-
-def _checked(name, x):
-    x = float(x)
-    if name.startswith("theta"):
-        if not 0 < x < np.pi:
-            raise ValueError(f"{name} = {x:.6g}: an angle between 0 and pi radians is wanted")
-    elif not 0 < x < np.inf:
-        raise ValueError(f"{name} = {x:.6g}: a positive finite ratio is wanted")
-    return x
-
-
-def _parameter(kind, value):
-    return value if kind.startswith("theta") else float(np.log(value))
+    if not known:
+        return Goal("free", ())
+    if len(known) == 1:
+        ((kind, x),) = known.items()
+        return Goal(kind, (x if kind.startswith("theta") else float(np.log(x)),))
+    one, two = _both(known)
+    if abs(one - two) <= ALIKE:  # one angle, twice: lam and mu from it may differ in a bit
+        return _equal({"theta": one})
+    return Goal("angles", (one, two))
 
 
 def _equal(known):
-    angles = [x for name, x in known.items() if name.startswith("theta")]
-    ratios = [x for name, x in known.items() if not name.startswith("theta")]
-    if (angles and ratios) or np.ptp(angles or ratios or [0.0]) > ALIKE:
+    """The goal theta = theta0, whatever it is or as given."""
+    angles = [
+        x if name.startswith("theta") else float(parallelogram.angles(x, x)[0])
+        for name, x in known.items()
+    ]
+    if np.ptp(angles or [0.0]) > ALIKE:
         raise ValueError("with equal=True one angle or one ratio is wanted, and no other value")
-    if ratios:
-        angles = [float(parallelogram.angles(ratios[0], ratios[0])[0])]
     return Goal("angles", (angles[0], angles[0]), True) if angles else Goal("equal", (), True)
 
 
@@ -80,26 +83,26 @@ def _both(known):
     names = set(known)
     if names == {"theta", "theta0"}:
         return known["theta"], known["theta0"]
-    if names == {"lam", "mu"}:
-        return tuple(float(x) for x in parallelogram.angles(known["lam"], known["mu"]))
     if names in ({"lam", "theta0"}, {"mu", "theta"}):
         one, other = sorted(names)
         rest = "mu or theta" if one == "lam" else "lam or theta0"
         raise ValueError(f"{one} and {other} fit two nets, or none: give {rest} instead of one")
-    kind = "theta" if "theta" in known else "theta0"
-    ratio = np.log(known["lam" if kind == "theta" else "mu"])
-    found, _ = logs(Goal(kind, (known[kind],)), [ratio])
-    return tuple(float(x) for x in parallelogram.angles(*np.exp(found)))
+    if names == {"lam", "mu"}:
+        found = parallelogram.angles(known["lam"], known["mu"])
+    else:
+        kind, ratio = ("theta", "lam") if "theta" in known else ("theta0", "mu")
+        found = angles(Goal(kind, (known[kind],)), [np.log(known[ratio])])
+    return tuple(float(x) for x in found)
 
 
-def logs(goal, s):
+def logs(goal: Goal, s: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """(log lam, log mu), shape (2,), and their derivatives (2, k) in the k freedoms s.
 
     "angles" has no freedom; "theta" and "mu" have s = (log lam), "theta0" and "lam" (log mu),
     "equal" the common logarithm, "free" both.  By Lemma 1 tanh(log mu) = cos theta /
     cosh(log lam), and the same with the names exchanged.
 
-    Paper: Lemma 1 (beyond the paper).
+    Paper: Lemma 1.
     """
     s = np.asarray(s, dtype=float)
     if goal.kind == "angles":
@@ -118,20 +121,19 @@ def logs(goal, s):
     return found[::turn], slopes[::turn]
 
 
-def freedom(goal, near):
+def angles(goal: Goal, s: Sequence[float]) -> tuple:
+    """(theta, theta0) of the goal at the freedom s; ValueError where no parallelogram has them."""
+    if goal.kind == "angles":
+        return goal.values
+    return parallelogram.angles(*np.exp(logs(goal, s)[0]))
+
+
+def freedom(goal: Goal, near: Sequence[float]) -> np.ndarray:
     """The freedom s of a goal whose (log lam, log mu) comes near the given pair."""
     log_lam, log_mu = _possible(goal, *near)
     values = {"angles": [], "free": [log_lam, log_mu], "equal": [(log_lam + log_mu) / 2]}
     one = log_lam if goal.kind in ("theta", "mu") else log_mu
     return np.array(values.get(goal.kind, [one]), dtype=float)
-
-
-def is_possible(goal, s):
-    """Whether the ratios at the freedom s are those of a parallelogram.
-
-    Paper: Eq. (4).
-    """
-    return bool(parallelogram.is_admissible(*np.exp(logs(goal, s)[0])))
 
 
 def _possible(goal, log_lam, log_mu):
@@ -142,27 +144,17 @@ def _possible(goal, log_lam, log_mu):
         log_lam = goal.values[0]
     if goal.kind == "mu":
         log_mu = goal.values[0]
-    size = abs(np.sinh(log_lam) * np.sinh(log_mu))
-    if size < INSIDE:
+    if abs(np.sinh(log_lam) * np.sinh(log_mu)) < INSIDE:
         return log_lam, log_mu
     if goal.kind in ("lam", "mu"):
         bound = np.arcsinh(INSIDE / abs(np.sinh(goal.values[0])))
-        return tuple(
-            x if k == goal.kind else np.sign(x) * bound
-            for k, x in (("lam", log_lam), ("mu", log_mu))
-        )
+        one, other = np.sign(log_lam) * bound, np.sign(log_mu) * bound
+        return (log_lam, other) if goal.kind == "lam" else (one, log_mu)
     shrink = brentq(lambda k: abs(np.sinh(k * log_lam) * np.sinh(k * log_mu)) - INSIDE, 0, 1)
     return shrink * log_lam, shrink * log_mu
 
 
-def values_at(goal, theta, theta0, log_lam, log_mu):
-    """What a net has in place of the goal's values; the four numbers are its means."""
-    here = {"theta": theta, "theta0": theta0, "lam": log_lam, "mu": log_mu}
-    names = ("theta", "theta0") if goal.kind == "angles" else (goal.kind,) * len(goal.values)
-    return tuple(float(here[name]) for name in names)
-
-
-def towards(goal, start, step):
+def towards(goal: Goal, start: Sequence[float], step: float) -> list[Goal]:
     """Goals on the straight way from the values `start` to those of the goal, which comes last.
 
     step: the largest change of an angle from one to the next, radians (for a logarithm of

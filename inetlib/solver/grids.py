@@ -4,13 +4,13 @@ A net of m x n quads is an array P (3, m+1, n+1) inside here, coordinates first.
 """
 
 import numpy as np
-from scipy.interpolate import RectBivariateSpline
 from tqdm import tqdm
 
-from .. import measure, mesh, parallelogram, solver
-from . import goal as goals
-from . import run, sparse
-from .run import timed
+from .. import measure, mesh
+from . import Result, sparse
+from . import optimize as solve
+from .goal import aim, logs
+from .run import judge, timed
 
 TOLERANCE = np.radians(1e-6)
 SPARE = 100  # the finest level aims at the tolerance divided by this
@@ -19,16 +19,16 @@ BETWEEN = 2, 1e-6, 0.01  # on the others: steps at most, deviation aimed at and 
 
 
 def optimize(
-    X,
-    theta=None,
-    theta0=None,
-    lam=None,
-    mu=None,
+    X: np.ndarray,
+    theta: float | None = None,
+    theta0: float | None = None,
+    lam: float | None = None,
+    mu: float | None = None,
     *,
-    coarse=20,
-    tolerance=TOLERANCE,
-    progress=False,
-):
+    coarse: int = 20,
+    tolerance: float = TOLERANCE,
+    progress: bool = False,
+) -> Result:
     """The grid X (m+1, n+1, 3) changed into an isogonal net: a `solver.Result`.
 
     theta, theta0 (radians), lam, mu: two of them, so that both angles are fixed
@@ -41,7 +41,7 @@ def optimize(
     once more from a finer coarse grid.  `history` has the steps of all levels in turn, and
     `message` says how many of them belong to which level.
     """
-    wanted = goals.goal(theta, theta0, lam, mu)
+    wanted = aim(theta, theta0, lam, mu)
     if wanted.kind != "angles":
         raise ValueError("both angles must be fixed by two numbers here: use solver.optimize")
     if not tolerance > 0:
@@ -56,7 +56,14 @@ def optimize(
             best = min(best or found, found, key=lambda one: one[1])
             if best[1] <= (0, tolerance):
                 break
-    return _result(*best, wanted, tolerance, seconds, 2 * m * n)
+    V, (flips, deviation), history, words = best
+    good = bool(flips == 0 and deviation <= tolerance)
+    message = f"{'' if good else 'not '}converged: {words}; at most " + (
+        f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    )
+    ratios = (float(x) for x in np.exp(logs(wanted, [])[0]))
+    told = history, good, message, seconds, (V.size, 2 * m * n)
+    return Result._make([V, *ratios, *wanted.values, *told])
 
 
 def _checked(X):
@@ -70,7 +77,7 @@ def _checked(X):
     return V.reshape(X.shape)
 
 
-def levels(m, n, coarse=20):
+def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
     """The sizes [(m0, n0), ..., (m, n)] of the grids from coarse to fine, each about doubled."""
     if not coarse >= 4:
         raise ValueError(f"coarse = {coarse}: at least 4 quads are wanted")
@@ -81,15 +88,12 @@ def levels(m, n, coarse=20):
     return sizes
 
 
-# --- from level to level ----------------------------------------------------------------
-
-
 def _attempt(X, goal, sizes, tolerance, seconds, bar):
     """(V, (flips, deviation), history, words) of one run through the levels."""
     P = np.moveaxis(X, 2, 0)
     with timed(seconds, "coarse"):
         V = _vertices(refine(P, *sizes[0]))
-        net = solver.optimize(V, mesh.grid_quads(*sizes[0]), *goal.values)
+        net = solve(V, mesh.grid_quads(*sizes[0]), *goal.values)
     history, good = list(net.history), net.converged
     words = [_words(sizes[0], len(history) - 1)]
     P = net.V.T.reshape(3, *(k + 1 for k in sizes[0]))
@@ -105,90 +109,66 @@ def _attempt(X, goal, sizes, tolerance, seconds, bar):
         if not good:
             words.append("where the refinement went astray")
             break
-    V, key = _finished([P] if good else [P, np.moveaxis(X, 2, 0)], X.shape, goal)
-    return V, key, history, ", ".join(words)
+    nets = [refine(net, *sizes[-1]) for net in ([P] if good else [P, np.moveaxis(X, 2, 0)])]
+    found = []
+    measured = _judge(sizes[-1], goal, {})
+    for P in nets:
+        if (step := measured(P)) is not None:
+            found.append((_vertices(P).copy(), (step.flips, step.deviation)))
+    return *min(found, key=lambda one: one[1]), history, ", ".join(words)
 
 
 def _words(size, count):
     return f"{size[0]} x {size[1]} quads in {count} steps"
 
 
-def _level(P, goal, most, aim, enough, seconds, bar):
+def _level(P, goal, most, exact, enough, seconds, bar):
     """(net, steps, whether they led on) of the smallest steps on one level."""
-    judge = _Judge(P, goal, seconds)
-    step, history = judge(P), []
-    while step and step.deviation > aim and len(history) < most:
+    size = P.shape[1] - 1, P.shape[2] - 1
+    measured, wanted = _judge(size, goal, seconds), logs(goal, [])[0]
+    step, history = measured(P), []
+    while step and step.deviation > exact and len(history) < most:
         with timed(seconds, "assemble"):
-            f, A = sparse.equations(P, *judge.logs[:, 0])
+            f, A = sparse.equations(P, *wanted)
         with timed(seconds, "solve"):
             d, _ = sparse.step(A, f)
-        after = judge(P - d, np.sqrt((d * d).sum(axis=0).max()))
+        after = measured(P - d, np.sqrt((d * d).sum(axis=0).max()))
         if after is None or after.deviation >= step.deviation:
             break
         P, step = P - d, after
         history.append(step)
-        bar.set_description(f"{judge.name}, {np.degrees(step.deviation):.2g} degrees off")
+        off = f"{np.degrees(step.deviation):.2g} degrees off"
+        bar.set_description(f"{size[0]} x {size[1]} quads, {off}")
         bar.update()
     return P, history, step is not None and not step.flips and step.deviation <= enough
 
 
-class _Judge:
-    """Measures nets of one size; the `solver.run.Step`, or None where the array is no net."""
+def _judge(size, goal, seconds):
+    """A function (P, way) that measures nets of one size: `run.judge`."""
+    with timed(seconds, "check"):
+        Q = mesh.grid_quads(*size)
+        neighbours = mesh.face_neighbours(Q)
 
-    def __init__(self, P, goal, seconds):
-        size = P.shape[1] - 1, P.shape[2] - 1
-        self.name = f"{size[0]} x {size[1]} quads"
-        self.goal, self.seconds = goal, seconds
-        self.logs = goals.logs(goal, [])[0][:, None]
+    def measured(P, way=0.0):
         with timed(seconds, "check"):
-            self.Q = mesh.grid_quads(*size)
-            self.neighbours = mesh.face_neighbours(self.Q)
-
-    def __call__(self, P, size=0.0):
-        with timed(self.seconds, "check"):
-            V = _vertices(P)
             try:
-                angles = measure.angles(V, self.Q)
-                residual = np.sum((np.log(measure.ratios(V, self.Q)) - self.logs) ** 2)
-                flips = len(measure.flipped(V, self.Q, self.neighbours))
+                return judge(("angle", goal), _vertices(P), Q, neighbours, goal, [], way)
             except ValueError:  # a face has collapsed, or a coordinate is not finite
                 return None
-            off = [np.abs(a - b) for a, b in zip(angles, self.goal.values, strict=True)]
-            spread = [float(f(x)) for x in off for f in (np.max, np.mean)]
-            return run.Step("angle", self.goal, float(residual), *spread, float(size), flips)
 
-
-def _finished(nets, shape, goal):
-    """(V, (flips, deviation)) of the best of the nets at full size."""
-    found = []
-    for P in nets:
-        P = refine(P, shape[0] - 1, shape[1] - 1)
-        step = _Judge(P, goal, {})(P)
-        if step is not None:
-            found.append((_vertices(P).copy(), (step.flips, step.deviation)))
-    return min(found, key=lambda one: one[1])
-
-
-def _result(V, key, history, words, goal, tolerance, seconds, count):
-    flips, deviation = key
-    good = bool(flips == 0 and deviation <= tolerance)
-    message = f"{'' if good else 'not '}converged: {words}; at most " + (
-        f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
-    )
-    theta, theta0 = goal.values
-    lam, mu = (float(x) for x in parallelogram.ratios(theta, theta0))
-    found = V, lam, mu, theta, theta0, history, good, message, seconds
-    return solver.Result(*found, (V.size, count))
+    return measured
 
 
 def _vertices(P):
     return np.moveaxis(P, 0, 2).reshape(-1, 3)
 
 
-def refine(P, m, n):
+def refine(P: np.ndarray, m: int, n: int) -> np.ndarray:
     """The grid P (3, ., .) at m x n quads, by cubic splines through its points."""
     if P.shape[1:] == (m + 1, n + 1):
         return P
+    from scipy.interpolate import RectBivariateSpline  # slow to import
+
     here = [np.linspace(0, 1, k) for k in P.shape[1:]]
     there = np.linspace(0, 1, m + 1), np.linspace(0, 1, n + 1)
     kx, ky = (min(3, len(x) - 1) for x in here)

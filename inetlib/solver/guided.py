@@ -8,17 +8,20 @@ Unknowns, with V vertices and F faces and one column each:
 The shape energies add rows, not equations.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import coo_array, diags_array, vstack
+from scipy.sparse import coo_array, csr_array, diags_array, vstack
 
-from . import residuals as constraints
-from . import sparse
+from ..parallelogram import ratios
+from . import residuals, sparse
+from .goal import Goal, freedom
 from .problem import shape
-from .run import timed
+from .run import Log, Options, timed, way
 
 EPSILON = 0.001  # of the regularisation
+STEPS = 17  # as many as the paper makes, the last two without shape energies
 
 
 class Layout(NamedTuple):
@@ -30,7 +33,7 @@ class Layout(NamedTuple):
     columns: int
 
 
-def layout(Q, count, theta_mode):
+def layout(Q: np.ndarray, count: int, theta_mode: bool) -> Layout:
     """The `Layout` of a mesh of `count` vertices.
 
     Paper: Eq. (17), Eq. (18), Eq. (21), Table 1.
@@ -44,116 +47,130 @@ def layout(Q, count, theta_mode):
     return Layout(theta_mode, sparse.coordinates(Q), at, start + len(common))
 
 
-def start(lay, V, Q):
+def start(lay: Layout, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """The unknowns at a mesh: auxiliary variables as they are there, common ones their means."""
     x = np.zeros(lay.columns)
     x[: V.size] = V.ravel()
     P = V[Q]
     d1, d2 = P[:, 2] - P[:, 0], P[:, 3] - P[:, 1]
-    squares = [np.einsum("ij,ij->i", d, d) for d in (d1, d2, d1 + d2, d2 - d1)]
-    x[lay.at["La"]], x[lay.at["Lb"]] = squares[:2]
-    lam = np.sqrt(squares[1] / squares[0])
+    La, Lb, Lp, Lq = (np.einsum("ij,ij->i", d, d) for d in (d1, d2, d1 + d2, d2 - d1))
+    lam, mu = np.sqrt(Lb / La), np.sqrt(Lp / Lq)
     if lay.theta_mode:
-        x[lay.at["c1"][0]] = np.mean(lam**2)
-        return x
-    mu = np.sqrt(squares[2] / squares[3])
-    x[lay.at["Lp"]], x[lay.at["Lq"]] = squares[2:]
-    x[lay.at["c1"]], x[lay.at["c2"]] = lam**2, mu**2
-    x[lay.at["lam"][0]], x[lay.at["mu"][0]] = lam.mean(), mu.mean()
+        values = {"La": La, "Lb": Lb, "c1": np.mean(lam**2)}
+    else:
+        values = {"La": La, "Lb": Lb, "Lp": Lp, "Lq": Lq, "c1": lam**2, "c2": mu**2}
+        values |= {"lam": lam.mean(), "mu": mu.mean()}
+    for name, value in values.items():
+        x[lay.at[name]] = value
     return x
 
 
-def logs(lay, x):
+def logs(lay: Layout, x: np.ndarray) -> np.ndarray:
     """(log lam, log mu) of the common unknowns; of their absolute values."""
     if lay.theta_mode:
         return np.full(2, np.log(np.abs(x[lay.at["c1"][0]])) / 2)
     return np.log(np.abs(x[[lay.at["lam"][0], lay.at["mu"][0]]]))
 
 
-def equations(lay, goal):
+def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple]]:
     """The hard constraints as a list of (function, index (f, k), further arguments).
 
     Paper: Eq. (17), Eq. (18), Eq. (19), Eq. (20), Eq. (21), Eq. (22).
     """
-    at = lay.at
 
     def index(*names):
-        return np.stack([at[name] for name in names], axis=1)
+        return np.stack([lay.at[name] for name in names], axis=1)
 
-    diagonals = np.hstack([lay.corners, index("La", "Lb")])
     found = [
-        (constraints.squared_diagonals, diagonals, ()),
-        (constraints.proportional, index("Lb", "La", "c1"), ()),
+        (residuals.squared_diagonals, np.hstack([lay.corners, index("La", "Lb")]), ()),
+        (residuals.proportional, index("Lb", "La", "c1"), ()),
     ]
     if lay.theta_mode:
-        found.append((constraints.theta_quad, lay.corners, ()))
+        found.append((residuals.theta_quad, lay.corners, ()))
         if goal.values:
-            ratio = constraints.theta_ratio(goal.values[0])
-            found.append((constraints.given, index("c1")[:1], (ratio**2,)))
+            lam, _ = ratios(goal.values[0], goal.values[0])
+            found.append((residuals.given, index("c1")[:1], (lam**2,)))
         return found
     found += [
-        (constraints.square_root, index("lam", "c1"), ()),
-        (constraints.squared_medials, np.hstack([lay.corners, index("Lp", "Lq")]), ()),
-        (constraints.proportional, index("Lp", "Lq", "c2"), ()),
-        (constraints.square_root, index("mu", "c2"), ()),
+        (residuals.square_root, index("lam", "c1"), ()),
+        (residuals.squared_medials, np.hstack([lay.corners, index("Lp", "Lq")]), ()),
+        (residuals.proportional, index("Lp", "Lq", "c2"), ()),
+        (residuals.square_root, index("mu", "c2"), ()),
     ]
-    return found + _wanted(index, goal)
-
-
-def _wanted(index, goal):
-    """Eqs. (19) and (20): what is given of the general mode."""
     if goal.kind in ("lam", "mu"):
-        return [(constraints.given, index(goal.kind)[:1], (np.exp(goal.values[0]),))]
-    names = ("theta", "theta0") if goal.kind == "angles" else (goal.kind,)
-    rows = {
-        "theta": (constraints.given_theta, ("lam", "c1", "c2")),
-        "theta0": (constraints.given_theta0, ("mu", "c2", "c1")),
-    }
+        return [*found, (residuals.given, index(goal.kind)[:1], (np.exp(goal.values[0]),))]
+    columns = {"theta": ("lam", "c1", "c2"), "theta0": ("mu", "c2", "c1")}
+    names = tuple(columns) if goal.kind == "angles" else (goal.kind,)
     pairs = zip(names, goal.values, strict=False)
-    return [(rows[name][0], index(*rows[name][1]), (value,)) for name, value in pairs]
+    return found + [(residuals.given_angle, index(*columns[k]), (x,)) for k, x in pairs]
 
 
-def size(Q, count, goal):
+def size(Q: np.ndarray, count: int, goal: Goal) -> tuple[int, int]:
     """(#var, #cons) of the formulation on a mesh, by the formulas above.
 
     Paper: Table 1.
     """
     lay = layout(Q, count, goal.equal)
-    x = np.ones(lay.columns)
-    rows = [f(x[index], *more)[0].size for f, index, more in equations(lay, goal)]
-    return lay.columns, sum(rows)
+    return lay.columns, hard(lay, goal, np.ones(lay.columns))[0].size
 
 
-def hard(lay, goal, x):
+def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]:
     """(residual, Jacobian) of all hard constraints at the unknowns x."""
-    residuals, blocks = [], []
+    found, blocks = [], []
     for function, index, more in equations(lay, goal):
         residual, jacobian = function(x[index], *more)
-        residuals.append(residual.ravel())
+        found.append(residual.ravel())
         blocks.append(sparse.rows(jacobian, index, lay.columns))
-    return np.concatenate(residuals), vstack(blocks, format="csr")
+    return np.concatenate(found), vstack(blocks, format="csr")
 
 
-def step(given, lay, goal, x, diagonal, seconds, with_shape=True, solve=None):
-    """One step of Guided Projection, the change of x: (H^T H + K^T K + eps^2) d = -gradient.
+def run(log: Log, options: Options, solve: Callable | None = None) -> None:
+    """Guided projection: a fixed number of steps, the last two without shape energies.
 
-    x holds lengths in units of `diagonal`, the bounding box's, as the paper scales its
-    meshes; with_shape: with the energies of Sec. 6.3, or without (the last two steps);
-    solve: a function (A, b), `solver.sparse.factor` unless given.
+    x holds lengths in units of the diagonal of the bounding box, as the paper scales its
+    meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
+
+    Paper: Table 1.
     """
-    with timed(seconds, "assemble"):
-        residual, H = hard(lay, goal, x)
-        A, g = H.T @ H, H.T @ residual
-        if with_shape:
-            count = given.V.size
-            K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
-            K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
-            A = A + coo_array((K.data, K.coords), shape=A.shape)
-            g[:count] += k / diagonal
-        root = np.ones(lay.columns)
-        root[: given.V.size] = np.repeat(np.sqrt(given.mobility), 3)
-        moving = diags_array(root)
-        A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
-    with timed(seconds, "solve"):
-        solve = solve or (lambda A, b: sparse.factor(A)(b))
-        return -root * solve(A.tocsc(), root * g)
+    given, V, lay = log.given, log.given.V, None
+    solve = solve or (lambda A, b: sparse.factor(A)(b))
+    goals = way(given, options.via, options.stride)
+    diagonal = np.linalg.norm(np.ptp(V, axis=0))
+    last = options.limit - 2
+    for k in range(options.limit):
+        goal = goals[k] if k < min(len(goals), last) else given.goal
+        if lay is None or goal.equal != lay.theta_mode:
+            lay = layout(given.Q, len(V), goal.equal)
+            x = start(lay, V / diagonal, given.Q)
+        with timed(given.seconds, "assemble"):
+            A, g, root = _system(given, lay, goal, x, diagonal if k < last else None)
+        with timed(given.seconds, "solve"):
+            d = -root * solve(A, root * g)
+        x = x + d
+        if not np.isfinite(x).all():
+            return
+        moved = diagonal * d[: V.size].reshape(-1, 3)
+        V, longest = V + moved, np.linalg.norm(moved, axis=1).max()
+        residual = np.sum(hard(lay, goal, x)[0] ** 2)
+        s = freedom(given.goal, logs(lay, x))
+        if log.record("guided", goal, V, s, longest, residual) is None or log.stopped:
+            return
+
+
+def _system(given, lay, goal, x, diagonal):
+    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility.
+
+    diagonal: the unit of the lengths in x, None without the energies of Sec. 6.3.
+    """
+    residual, H = hard(lay, goal, x)
+    A, g, count = H.T @ H, H.T @ residual, given.V.size
+    if diagonal:
+        K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
+        K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
+        A = A + coo_array((K.data, K.coords), shape=A.shape)
+        g[:count] += k / diagonal
+    root = np.ones(lay.columns)
+    root[:count] = np.repeat(np.sqrt(given.mobility), 3)
+    moving = diags_array(root)
+    A = moving @ A @ moving + EPSILON**2 * diags_array(np.ones(lay.columns))
+    return A.tocsc(), g, root

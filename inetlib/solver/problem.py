@@ -1,13 +1,14 @@
 """An optimisation problem: the checked input, and all that stays the same from step to step."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array, kron
 
 from .. import measure, mesh
-from . import residuals as constraints
-from . import sparse
+from ..reference import Reference
+from . import residuals, sparse
 from .goal import Goal
 
 FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
@@ -31,16 +32,18 @@ PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.0
 
 
 class Problem(NamedTuple):
-    """A checked problem; arrays as in `problem`, `edge` the mean length of an edge.
+    """A checked problem: the arguments of `prepare`, weights and mobility as arrays (n,).
 
-    The factors solve the linear systems of the two kinds of steps (see `steps`).
+    boundary: vertices on it; fair: the matrix of fairness; neighbours: of the faces; edge:
+    the mean length of an edge; the factors solve the linear systems of the kinds of steps;
+    seconds: {stage: seconds} spent so far.
     """
 
     V: np.ndarray
     Q: np.ndarray
     goal: Goal
     weights: Weights
-    reference: object
+    reference: Reference | None
     on_surface: bool
     mobility: np.ndarray
     boundary: np.ndarray
@@ -49,75 +52,58 @@ class Problem(NamedTuple):
     edge: float
     shape_factor: sparse.Factor
     angle_factor: sparse.Factor
+    quadratic: bool
+    seconds: dict
 
 
 def prepare(
-    V,
-    Q,
-    goal,
-    weights=None,
-    reference=None,
-    on_surface=False,
-    fixed=None,
-    mobility=None,
-    polygons=(),
-):
+    V: np.ndarray,
+    Q: np.ndarray,
+    goal: Goal,
+    weights: Weights | None = None,
+    reference: Reference | None = None,
+    on_surface: bool = False,
+    fixed: str | Sequence | np.ndarray | None = None,
+    mobility: np.ndarray | None = None,
+    polygons: Sequence = (),
+    quadratic: bool = False,
+) -> Problem:
     """The `Problem` of a labelled mesh, or a ValueError that says what is wrong with the input.
 
     V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
     fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
-    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net.
+    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net;
+    quadratic: the kind of residual, see `run.equations`.
     """
     V, Q = _checked_mesh(V, Q)
-    count = len(V)
-    weights = _checked_weights(weights or Weights(), count)
+    weights = _checked_weights(weights or Weights(), len(V))
     boundary = _boundary(Q, polygons)
-    mobility = _checked_mobility(mobility, count) * ~_mask(fixed, boundary, count)
-    if not mobility.any():
-        raise ValueError("no vertex is free to move: fix fewer")
-    if reference is None:
-        if on_surface:
-            raise ValueError("on_surface=True needs a reference surface")
-    else:
+    mobility = _mobility(mobility, fixed, boundary, len(V))
+    if reference is not None:
         _check_distance(V, reference)
-    triples = mesh.triples(Q)
-    edge = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean()
-    fair = _fairness(triples, weights.fairness, count)
-    neighbours = mesh.face_neighbours(Q)
-    return Problem(
-        V,
-        Q,
-        goal,
-        weights,
-        reference,
-        on_surface,
-        mobility,
-        boundary,
-        fair,
-        neighbours,
-        float(edge),
-        sparse.Factor(V),
-        sparse.Factor(V[Q].mean(axis=1)),
-    )
+    elif on_surface:
+        raise ValueError("on_surface=True needs a reference surface")
+    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
+    edge = float(np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean())
+    factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
+    kept = goal, weights, reference, on_surface, mobility, boundary, fair
+    return Problem(V, Q, *kept, mesh.face_neighbours(Q), edge, *factors, quadratic, {})
 
 
-def shape(problem, V):
+def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     """Matrix (3 n, 3 n) and half gradient (3 n,) of the energies of fairness, approximation
     and boundary gliding at the net V; the last two only with a reference.
     """
     A, g = problem.fair, problem.fair @ V.ravel()
     if problem.reference is None:
         return A, g
-    weights = problem.weights
-    terms = []
-    feet, normals = problem.reference.closest(V)
-    terms.append(
-        (np.arange(len(V)), weights.approximation, constraints.approximation(V, feet, normals))
-    )
+    weights, at = problem.weights, np.arange(len(V))
+    near = residuals.distances(V, *problem.reference.closest(V))
+    terms = [(at, weights.approximation, near)]
     if weights.boundary.any() and problem.reference.has_boundary and problem.boundary.size:
         at = problem.boundary
         feet, _, e2, e3 = problem.reference.boundary(V[at])
-        terms.append((at, weights.boundary[at], constraints.gliding(V[at], feet, e2, e3)))
+        terms.append((at, weights.boundary[at], residuals.distances(V[at], feet, e2, e3)))
     for at, weight, (residual, jacobian) in terms:
         J = sparse.rows(jacobian, sparse.coordinates(at[:, None]), V.size)
         W = diags_array(np.repeat(weight, residual.shape[1]))
@@ -134,15 +120,14 @@ def _checked_mesh(V, Q):
             "and the other faces as polygons=[...]"
         )
     V, Q = mesh.check(V, Q)
-    if not mesh.is_labelled(Q):
-        raise ValueError("the faces do not agree on u and v: call mesh.label first")
+    mesh.require_labels(Q)
     measure.quality(V, Q)  # refuses collapsed faces
     return V, Q
 
 
 def _checked_weights(weights, count):
     found = {}
-    for name, value in zip(Weights._fields, weights, strict=True):
+    for name, value in weights._asdict().items():
         value = np.asarray(value, dtype=float)
         if value.ndim and value.shape != (count,):
             raise ValueError(
@@ -155,47 +140,39 @@ def _checked_weights(weights, count):
     return Weights(**found)
 
 
-def _checked_mobility(mobility, count):
-    if mobility is None:
-        return np.ones(count)
-    mobility = np.asarray(mobility, dtype=float)
+def _mobility(mobility, fixed, boundary, count):
+    """The mobility (n,), 0 for what is fixed."""
+    mobility = np.ones(count) if mobility is None else np.array(mobility, dtype=float)
     if mobility.shape != (count,) or not np.isfinite(mobility).all() or (mobility < 0).any():
         raise ValueError(f"mobility: {count} finite numbers >= 0 are wanted, one for each vertex")
-    return mobility
-
-
-def _mask(fixed, boundary, count):
-    mask = np.zeros(count, dtype=bool)
-    if fixed is None:
-        return mask
     if isinstance(fixed, str):
         if fixed != "boundary":
             raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
-        mask[boundary] = True
-        return mask
-    fixed = np.asarray(fixed)
-    if fixed.dtype == bool and fixed.shape != (count,):
-        raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
-    if fixed.dtype != bool and fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
+        fixed = boundary
+    fixed = np.asarray([] if fixed is None else fixed)
+    if fixed.dtype == bool:
+        if fixed.shape != (count,):
+            raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
+    elif fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
         raise ValueError(f"fixed names a vertex that is not there: 0 to {count - 1} are wanted")
-    mask[fixed if fixed.size else []] = True
-    return mask
+    if fixed.size:
+        mobility[fixed] = 0
+    if not mobility.any():
+        raise ValueError("no vertex is free to move: fix fewer")
+    return mobility
 
 
 def _boundary(Q, polygons):
     """The vertices on the boundary, without the rims of the given polygons."""
-    loops = mesh.boundary_loops(Q)
-    sets = [frozenset(loop.tolist()) for loop in loops]
+    loops = {frozenset(loop.tolist()): loop for loop in mesh.boundary_loops(Q)}
     for polygon in polygons:
         rim = frozenset(np.asarray(polygon).ravel().tolist())
-        if rim not in sets:
+        if loops.pop(rim, None) is None:
             raise ValueError(
                 f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must "
                 "be all the vertices of one boundary loop"
             )
-        loops.pop(sets.index(rim))
-        sets.remove(rim)
-    return np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
+    return np.concatenate([np.zeros(0, dtype=np.int64), *loops.values()])
 
 
 def _check_distance(V, reference):
@@ -210,7 +187,5 @@ def _check_distance(V, reference):
 
 def _fairness(triples, weights, count):
     """The matrix of sum w |2 v - left - right|^2, (3 n, 3 n)."""
-    _, jacobian = constraints.fairness(np.zeros((len(triples), 9)))
-    scalar = sparse.rows(jacobian[:, :1, ::3], triples, count)
-    scalar = scalar.T @ (scalar * weights[triples[:, 1]][:, None])
-    return kron(scalar, np.eye(3), format="csr")
+    J = sparse.rows(np.tile([[[-1.0, 2.0, -1.0]]], (len(triples), 1, 1)), triples, count)
+    return kron(J.T @ (J * weights[triples[:, 1]][:, None]), np.eye(3), format="csr")

@@ -9,6 +9,8 @@ Where these rows sit in the unknowns, how they are weighted and solved, is not k
 
 import numpy as np
 
+Local = tuple[np.ndarray, np.ndarray]  # residual and Jacobian
+
 # d1 = v3 - v1, d2 = v4 - v2, v3 + v4 - v1 - v2 and v1 + v4 - v2 - v3 (twice the medial
 # lines) in terms of the corners
 SIGNS = np.array([[-1, 0, 1, 0], [0, -1, 0, 1], [-1, -1, 1, 1], [1, -1, -1, 1]], dtype=float)
@@ -28,39 +30,49 @@ def _by_corners(gradients, rows):
     return np.einsum("vfx,vc->fcx", gradients, SIGNS[rows]).reshape(-1, 12)
 
 
-# --- the reduced formulation ------------------------------------------------------------
+def logarithms(d1: np.ndarray, d2: np.ndarray, p: np.ndarray, q: np.ndarray) -> Local:
+    """log |d2| / |d1| and log |p| / |q|, (2, ...), and their gradients (2, 2, 3, ...).
+
+    d1, d2, p = d1 + d2 = 2 m13, q = d2 - d1 = 2 m24: (3, ...).  The gradients are those in
+    -d1 and d2 (first axis) of log lam and log mu (second).
+
+    Paper: Eq. (11), Eq. (12).
+    """
+    s1, s2, sp, sq = (np.einsum("x...,x...->...", a, a) for a in (d1, d2, p, q))
+    found = 0.5 * np.log(np.stack([s2 / s1, sp / sq]))
+    gradients = np.empty((2, 2, *d1.shape))
+    gradients[0, 0], gradients[1, 0] = d1 / s1, d2 / s2
+    p, q = p / sp, q / sq
+    gradients[0, 1], gradients[1, 1] = -p - q, p - q
+    return found, gradients
 
 
-def log_ratios(x):
+def log_ratios(x: np.ndarray) -> Local:
     """(log lam, log mu) of the faces: logarithms of |d2| / |d1| and |m13| / |m24|.
 
     x: (f, 12).  Free of scale; subtract the wanted logarithms to get a residual.
 
     Paper: Eq. (11), Eq. (12).
     """
-    vectors = _vectors(x, [0, 1, 2, 3])
-    squares = _dot(vectors, vectors)
-    a, b, p, q = vectors / squares[..., None]  # gradients of log |.|
-    residual = 0.5 * np.log(np.stack([squares[1] / squares[0], squares[2] / squares[3]], axis=1))
-    jacobian = np.empty((len(x), 2, 4, 3))
-    jacobian[:, 0, 0], jacobian[:, 0, 2] = a, -a
-    jacobian[:, 0, 1], jacobian[:, 0, 3] = -b, b
-    jacobian[:, 1, 2], jacobian[:, 1, 3] = p + q, p - q
-    jacobian[:, 1, 0], jacobian[:, 1, 1] = -jacobian[:, 1, 2], -jacobian[:, 1, 3]
-    return residual, jacobian.reshape(-1, 2, 12)
+    found, (one, two) = logarithms(*np.moveaxis(_vectors(x, [0, 1, 2, 3]), 2, 1))
+    jacobian = np.stack([one, -two, -one, two], axis=1)  # (ratio, corner, xyz, face)
+    return found.T, np.moveaxis(jacobian, 3, 0).reshape(-1, 2, 12)
 
 
-def scaled_ratios(x, lam, mu, sizes):
+def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None = None) -> Local:
     """(d2^2 - lam^2 d1^2) / (2 lam size1) and the same for m13, m24, mu and size2.
 
-    x: (f, 12); sizes: (f, 2), fixed positive numbers, best |d1| |d2| and |m13| |m24| at the
-    present net.  Then the derivatives are those of `log_ratios` at a solution, while the
-    residual stays a polynomial and does not explode where an edge collapses.
+    x: (f, 12); sizes (f, 2) are numbers without derivatives, |d1| |d2| and |m13| |m24| if
+    None.  Then the derivatives are those of `log_ratios` at a solution, while the residual
+    stays a polynomial and does not explode where an edge collapses.
 
-    Paper: Eq. (11), Eq. (12) (squared and scaled).
+    Paper: Eq. (11), Eq. (12).
     """
     d1, d2, p, q = vectors = _vectors(x, [0, 1, 2, 3])
     vectors[2:] /= 2
+    if sizes is None:
+        lengths = np.linalg.norm(vectors, axis=2)
+        sizes = np.stack([lengths[0] * lengths[1], lengths[2] * lengths[3]], axis=1)
     scale = 2 * np.array([lam, mu]) * sizes
     residual = np.stack(
         [_dot(d2, d2) - lam**2 * _dot(d1, d1), _dot(p, p) - mu**2 * _dot(q, q)], axis=1
@@ -70,19 +82,7 @@ def scaled_ratios(x, lam, mu, sizes):
     return residual / scale, np.stack([one, two], axis=1) / scale[..., None]
 
 
-def sizes(x):
-    """(|d1| |d2|, |m13| |m24|) of the faces, (f, 2): the scale of `scaled_ratios`; x: (f, 12).
-
-    Paper: Eq. (11), Eq. (12) (scale).
-    """
-    d1, d2, p, q = np.linalg.norm(_vectors(x, [0, 1, 2, 3]), axis=2)
-    return np.stack([d1 * d2, p * q / 4], axis=1)
-
-
-# --- the paper's formulation ------------------------------------------------------------
-
-
-def squared_diagonals(x):
+def squared_diagonals(x: np.ndarray) -> Local:
     """d1^2 - La and d2^2 - Lb; x: corners, La, Lb (f, 14).
 
     Paper: Eq. (17).
@@ -90,7 +90,7 @@ def squared_diagonals(x):
     return _squared(x, [0, 1])
 
 
-def squared_medials(x):
+def squared_medials(x: np.ndarray) -> Local:
     """(2 m13)^2 - Lp and (2 m24)^2 - Lq; x: corners, Lp, Lq (f, 14).
 
     Paper: Eq. (18).
@@ -107,7 +107,7 @@ def _squared(x, rows):
     return _dot(vectors, vectors).T - x[:, 12:], jacobian
 
 
-def proportional(x):
+def proportional(x: np.ndarray) -> Local:
     """L - c K; x: (L, K, c), (f, 3).  Lb = c1 La, and Lp = c2 Lq (printed the other way round).
 
     Paper: Eq. (17), Eq. (18).
@@ -116,7 +116,7 @@ def proportional(x):
     return (L - c * K)[:, None], np.stack([np.ones_like(L), -c, -K], axis=1)[:, None]
 
 
-def square_root(x):
+def square_root(x: np.ndarray) -> Local:
     """lam^2 - c1, or mu^2 - c2; x: (ratio, its square), (f, 2).
 
     Paper: Eq. (17), Eq. (18).
@@ -125,7 +125,7 @@ def square_root(x):
     return (root**2 - square)[:, None], np.stack([2 * root, -np.ones_like(root)], 1)[:, None]
 
 
-def given(x, value):
+def given(x: np.ndarray, value: float) -> Local:
     """x - value for single variables, x: (f, 1): a ratio with a wanted value.
 
     Paper: Eq. (19), Eq. (22).
@@ -133,28 +133,21 @@ def given(x, value):
     return x - value, np.ones((len(x), 1, 1))
 
 
-def given_theta(x, theta):
+def given_angle(x: np.ndarray, angle: float) -> Local:
     """(1 + c1)(c2 - 1) - 2 cos theta lam (1 + c2); x: (lam, c1, c2), (f, 3).
 
-    Paper: Eq. (20).
-    """
-    lam, c1, c2 = x.T
-    k = 2 * np.cos(theta)
-    residual = (1 + c1) * (c2 - 1) - k * lam * (1 + c2)
-    return residual[:, None], np.stack([-k * (1 + c2), c2 - 1, 1 + c1 - k * lam], axis=1)[:, None]
-
-
-def given_theta0(x, theta0):
-    """(1 + c2)(c1 - 1) - 2 cos theta0 mu (1 + c1); x: (mu, c2, c1), (f, 3).
-
-    The same function of (mu, c2, c1) as `given_theta` of (lam, c1, c2).
+    The same function of (mu, c2, c1) and theta0.
 
     Paper: Eq. (20).
     """
-    return given_theta(x, theta0)
+    ratio, c1, c2 = x.T
+    k = 2 * np.cos(angle)
+    residual = (1 + c1) * (c2 - 1) - k * ratio * (1 + c2)
+    columns = [-k * (1 + c2), c2 - 1, 1 + c1 - k * ratio]
+    return residual[:, None], np.stack(columns, axis=1)[:, None]
 
 
-def theta_quad(x):
+def theta_quad(x: np.ndarray) -> Local:
     """d2^2 - d1^2 - 2 d1 . d2, zero where theta = theta0; x: corners (f, 12).
 
     Paper: Eq. (13), Eq. (21).
@@ -165,34 +158,7 @@ def theta_quad(x):
     return residual[:, None], gradient[:, None]
 
 
-def theta_ratio(theta):
-    """lam = mu of a theta-quad: cos theta + sqrt(1 + cos^2 theta).
-
-    Paper: Eq. (8), Eq. (22).
-    """
-    return np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
-
-
-# --- shape ------------------------------------------------------------------------------
-
-
-def fairness(x):
-    """2 v - left - right of three neighbours (left, v, right) of a polyline; x: (k, 9)."""
-    jacobian = np.kron(np.array([-1.0, 2.0, -1.0]), np.eye(3))
-    return x @ jacobian.T, np.broadcast_to(jacobian, (len(x), 3, 9))
-
-
-def closeness(x, before):
-    """v - its position one iteration before; x, before: (k, 3)."""
-    return x - before, np.broadcast_to(np.eye(3), (len(x), 3, 3))
-
-
-def approximation(x, feet, normals):
-    """(v - p) . n, the distance from the tangent plane at the closest point; all (k, 3)."""
-    return _dot(x - feet, normals)[:, None], normals[:, None]
-
-
-def gliding(x, feet, e2, e3):
-    """((v - p) . e2, (v - p) . e3): the distance from the tangent of the boundary; all (k, 3)."""
-    frame = np.stack([e2, e3], axis=1)
+def distances(x: np.ndarray, feet: np.ndarray, *normals: np.ndarray) -> Local:
+    """(v - p) . n for each of the normals: the distances of points from planes; all (k, 3)."""
+    frame = np.stack(normals, axis=1)
     return np.einsum("kqx,kx->kq", frame, x - feet), frame

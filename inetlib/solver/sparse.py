@@ -1,11 +1,15 @@
 """Sparse matrices from local Jacobians, and their factorisation."""
 
+from collections.abc import Callable
+
 import numpy as np
 from scipy import fft
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import LinearOperator, cg, splu
 from threadpoolctl import ThreadpoolController
+
+from .residuals import logarithms
 
 BLAS = ThreadpoolController()
 NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
@@ -13,7 +17,7 @@ MANY = 5000  # from here on nested dissection beats minimum degree
 LEAF = 16  # points that need no further division
 
 
-def rows(jacobian, index, columns):
+def rows(jacobian: np.ndarray, index: np.ndarray, columns: int) -> csr_array:
     """Local Jacobians (f, q, k) as a sparse matrix (f q, columns).
 
     index: (f, k), the column of each local variable; within a row all different.
@@ -23,19 +27,19 @@ def rows(jacobian, index, columns):
     return csr_array((np.ascontiguousarray(jacobian).ravel(), *pattern), shape=(f * q, columns))
 
 
-def coordinates(vertices):
+def coordinates(vertices: np.ndarray) -> np.ndarray:
     """Columns of the coordinates of vertices (f, c): (f, 3 c)."""
     vertices = np.asarray(vertices)
     return (3 * vertices[..., None] + np.arange(3)).reshape(len(vertices), -1)
 
 
-def scaled(A, columns):
+def scaled(A: csr_array, columns: np.ndarray | float) -> csr_array:
     """A with its columns multiplied by numbers, (columns,) or one; CSR."""
     data = A.data * (columns[A.indices] if np.ndim(columns) else columns)
     return csr_array((data, A.indices, A.indptr), shape=A.shape)
 
 
-def factor(A, order=None):
+def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
     """A function that solves A x = b, for a symmetric positive definite sparse A.
 
     order: a permutation of the rows that keeps the factors sparse, such as that of
@@ -65,16 +69,15 @@ class Factor:
         self.points, self.order = points, None
 
     def __call__(self, A):
-        narrow = _banded(A) if self.order is None else None
-        if narrow:
-            return narrow
-        if self.order is None and len(self.points) >= MANY:
+        if self.order is None:
+            if narrow := _banded(A):
+                return narrow
+            if len(self.points) < MANY:
+                factors = _superlu(A.tocsc(), "MMD_AT_PLUS_A")
+                self.order = np.argsort(factors.perm_c)
+                return factors.solve
             self.order = nested_dissection(self.points, A)
-        if self.order is not None:
-            return factor(A, self.order)
-        factors = _superlu(A.tocsc(), "MMD_AT_PLUS_A")
-        self.order = np.argsort(factors.perm_c)
-        return factors.solve
+        return factor(A, self.order)
 
 
 def _superlu(A, ordering):
@@ -101,10 +104,7 @@ def _banded(A):
     return lambda b: cho_solve_banded((factors, True), b, check_finite=False)
 
 
-# --- ordering ---------------------------------------------------------------------------
-
-
-def nested_dissection(points, A):
+def nested_dissection(points: np.ndarray, A: csr_array) -> np.ndarray:
     """A permutation of the rows of A that keeps its factors sparse, by halving again and again.
 
     points (k, d): where the unknowns are, A (b k, b k): b in a row at each point.  Of each
@@ -145,45 +145,39 @@ def _halves(points, part):
     return side
 
 
-# --- One smallest step of a large grid, by conjugate gradients and without any matrix. ---
+# --- a smallest step of a large grid: conjugate gradients without any matrix ----------------
 
 INEXACT = 1e-4  # relative residual of the conjugate gradients
 
 
-def step(A, f):
+def step(A: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, int]:
     """(d, iterations): the smallest change with J d = f, nearly; d (3, m+1, n+1)."""
     y, count = solve(A, f)
     return transposed(A, y), count
 
 
-def equations(P, log_lam, log_mu):
-    """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the Jacobian.
+def equations(P: np.ndarray, log_lam: float, log_mu: float) -> tuple[np.ndarray, np.ndarray]:
+    """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the gradients.
 
-    The same equations as `solver.residuals.log_ratios` for the faces of a grid.
+    f (2, m, n), A (2, 2, 3, m, n) as in `residuals.logarithms`: for the faces of a grid.
 
     Paper: Eq. (11), Eq. (12).
     """
-    d1 = P[:, 1:, :-1] - P[:, :-1, 1:]
-    d2 = P[:, 1:, 1:] - P[:, :-1, :-1]
-    s1, s2, c = ((a * b).sum(axis=0) for a, b in ((d1, d1), (d2, d2), (d1, d2)))
-    p, q = s1 + s2 + 2 * c, s1 + s2 - 2 * c  # (2 m13)^2 and (2 m24)^2
-    f = np.stack([0.5 * np.log(s2 / s1) - log_lam, 0.5 * np.log(p / q) - log_mu])
-    A = np.empty((2, 2, *d1.shape))
-    A[0, 0], A[1, 0] = d1 / s1, d2 / s2
-    plus, minus = 1 / p + 1 / q, 1 / p - 1 / q
-    A[0, 1] = -minus * d1 - plus * d2
-    A[1, 1] = plus * d1 + minus * d2
+    d1, d2 = P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1]
+    f, A = logarithms(d1, d2, d1 + d2, d2 - d1)
+    f[0] -= log_lam
+    f[1] -= log_mu
     return f, A
 
 
-def times(A, x):
+def times(A: np.ndarray, x: np.ndarray) -> np.ndarray:
     """J x, (2, m, n), of vectors x (3, m+1, n+1) at the vertices."""
     one, two = x[:, :-1, 1:] - x[:, 1:, :-1], x[:, 1:, 1:] - x[:, :-1, :-1]
     rows = "rkij,kij->rij"
     return np.einsum(rows, A[0], one) + np.einsum(rows, A[1], two)
 
 
-def transposed(A, y):
+def transposed(A: np.ndarray, y: np.ndarray) -> np.ndarray:
     """J^T y, (3, m+1, n+1), of the face values y (2, m, n)."""
     x = np.zeros((3, y.shape[1] + 1, y.shape[2] + 1))
     one, two = (np.einsum("rkij,rij->kij", a, y) for a in A)
@@ -194,31 +188,24 @@ def transposed(A, y):
     return x
 
 
-def solve(A, f, tolerance=INEXACT, most=300):
+def solve(
+    A: np.ndarray, f: np.ndarray, tolerance: float = INEXACT, most: int = 300
+) -> tuple[np.ndarray, int]:
     """(y, iterations) with J J^T y = f up to the relative residual: conjugate gradients."""
-    precondition = preconditioner(A)
-    y, r = np.zeros_like(f), f.copy()
-    z = precondition(r)
-    p, rz = z.copy(), _dot(r, z)
-    enough = tolerance**2 * _dot(f, f)
-    for k in range(most):
-        if _dot(r, r) <= enough:
-            return y, k
-        q = times(A, transposed(A, p))
-        step = rz / _dot(p, q)
-        y += step * p
-        r -= step * q
-        z = precondition(r)
-        before, rz = rz, _dot(r, z)
-        p = z + (rz / before) * p
-    return y, most
+    steps: list = []
+
+    def flat(apply):
+        shape = f.size, f.size
+        return LinearOperator(shape, lambda x: apply(x.reshape(f.shape)).ravel(), dtype=float)
+
+    matrix, inverse = flat(lambda y: times(A, transposed(A, y))), flat(preconditioner(A))
+    how = {"rtol": tolerance, "maxiter": most, "M": inverse, "callback": steps.append}
+    with BLAS.limit(limits=1, user_api="blas"):  # more threads only wait here
+        y, _ = cg(matrix, f.ravel(), **how)
+    return y.reshape(f.shape), len(steps)
 
 
-def _dot(a, b):
-    return np.einsum("rij,rij->", a, b)  # np.vdot would start threads that only wait here
-
-
-def preconditioner(A):
+def preconditioner(A: np.ndarray) -> Callable:
     """A function z(r), symmetric positive definite, nearly the inverse of J J^T.
 
     Each face is scaled by the Cholesky factor of its 2 x 2 block; what remains is nearly the
