@@ -53,15 +53,6 @@ def test_the_style_is_the_same_whatever_the_users_own_one_is():
         assert all(value == wanted[name] for name, value in plt.rcParams.items())
 
 
-def test_canvas_has_the_panels_asked_for_without_frames_and_with_equal_aspect():
-    figure, axes = plot.canvas([["A", "B"], ["C", "C"]], 6, 4, ratios=[1, 2])
-    assert set(axes) == {"A", "B", "C"}
-    np.testing.assert_allclose(figure.get_size_inches(), (6, 4))
-    assert all(ax.get_aspect() == 1 and not ax.axison for ax in axes.values())
-    assert axes["A"].get_gridspec().get_width_ratios() == [1, 2]
-    plt.close(figure)
-
-
 def test_words(ax):
     plot.panel(ax, "C_1", "after the map")
     assert ax.get_title(loc="left") == r"$\mathbf{C_1}$  after the map"
@@ -180,14 +171,6 @@ def test_an_angle_in_space_is_projected(ax):
     np.testing.assert_allclose(ax.lines[0].get_xydata(), wanted[:, :2], atol=1e-12)
     middle = np.array([1, 2]) + 1.45 * (wanted[20, :2] - [1, 2])
     np.testing.assert_allclose(ax.texts[0].get_position(), middle, atol=1e-12)
-
-
-def test_a_vector_reaches_from_start_to_end(ax):
-    plot.vector(ax, [1, 1], [5, 3])
-    (arrow,) = ax.texts
-    assert (arrow.xy, arrow.get_position()) == ((5, 3), (1, 1))
-    assert (arrow.arrowprops["shrinkA"], arrow.arrowprops["shrinkB"]) == (0, 0)
-    np.testing.assert_allclose(ax.dataLim.get_points(), [[1, 1], [5, 3]])
 
 
 # --- in space -----------------------------------------------------------------------------
