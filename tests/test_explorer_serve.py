@@ -153,7 +153,7 @@ def made(**values):
 
 
 def texts(session):
-    return plates.numbers(session.numbers(), session.shown)
+    return plates.numbers(session.report, session.V, session.Q)
 
 
 def echo(choice):
@@ -172,7 +172,7 @@ async def test_a_tab_shows_the_net_of_its_link(app):
     assert np.array_equal(app.session.V, alone.V)
     assert app.state.numbers == texts(alone) and app.state.message == alone.message
     assert shown(app) == echo(alone.choice)
-    assert app.state.link == alone.link() and app.state.code == alone.code()
+    assert app.state.link == choices.link(alone.choice) and app.state.code == alone.code()
     assert app.state.alert == app.state.problem == ""
     for words in (app.state.parallelogram_svg, app.state.histogram_svg, app.state.profile_svg):
         assert words.startswith("<svg")
@@ -197,7 +197,7 @@ async def test_a_change_of_the_page_changes_net_numbers_code_and_link(app, name)
     await arrived(app, "?m=6&n=5")
     await change(app, **CHANGES[name])
     alone = made(**{"m": 6, "n": 5} | CHANGES[name])
-    await until(lambda: app.state.link == alone.link())
+    await until(lambda: app.state.link == choices.link(alone.choice))
     await until(lambda: app.state.numbers == texts(alone))
     assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
     assert shown(app) == echo(alone.choice) and app.state.alert == ""
@@ -279,7 +279,7 @@ async def test_what_is_only_shown_is_not_made_again(app):
 
 async def test_what_goes_wrong_unexpectedly_is_said(app, monkeypatch, capsys):
     await arrived(app, "?m=4&n=4")
-    monkeypatch.setattr(nets, "construct", lambda choice: [][1])
+    monkeypatch.setattr(nets, "make", lambda choice: [][1])
     await change(app, theta=70)
     await until(lambda: app.state.problem)
     assert "list index out of range" in app.state.problem
@@ -380,7 +380,7 @@ async def test_a_search_that_breaks_unexpectedly_is_over_too(app, quick, monkeyp
         raise RuntimeError("a factor is singular")
 
     await arrived(app, "?m=4&n=4")
-    monkeypatch.setattr(nets, "find", broken)
+    monkeypatch.setattr(nets, "make", broken)
     await change(app, kind="freeform")
     await until(lambda: app.state.problem)
     await asyncio.sleep(0.05)
@@ -506,7 +506,7 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
 @pytest.mark.parametrize("call", ["fit", "from_above", "from_side"])
 async def test_every_view_shows_the_whole_net_and_not_much_else(app, call, aspect):
     await arrived(app, "?kind=revolution&m=7&n=5")
-    getattr(app, call)(aspect)
+    app.look(call, aspect)
     camera = app.scene.plotter.camera
     towards = np.array(camera.position) - camera.focal_point
     towards /= np.linalg.norm(towards)
@@ -971,7 +971,7 @@ def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, pref
     monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", prefix)
     start = f"{prefix}proxy/{door.port}/"
     live = notebook.show(live=True, m=4, n=4)
-    assert live.address == f"{start}index.html?{made(m=4, n=4).link()}"
+    assert live.address == f"{start}index.html?{choices.link(made(m=4, n=4).choice)}"
     given = notebook.show_net(*surfaces.freeform_patch(3, 3))
     (key,) = door.nets
     assert given.address.startswith(f"{start}net/{key}/index.html?")

@@ -5,7 +5,9 @@ Lines are drawn in the page's own colours: `currentColor`, and the classes u, v,
 
 import numpy as np
 
-from ..drawings._parallelogram import corners
+from .. import measure
+from ..parallelogram import ratios
+from ..surfaces import spline_profile
 from .choices import HEIGHTS
 
 BOX = 270, 150  # of the parallelogram and the histograms, in pixels
@@ -19,7 +21,8 @@ def parallelogram(theta, theta0):
     Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
     medial lines, in those of u and v.
     """
-    shape = corners(theta, theta0)
+    slanted = ratios(theta, theta0)[0] * np.exp(1j * theta)
+    shape = np.array([slanted, 0, 1, 1 + slanted])  # A, B, C, D
     low = shape.real.min() + 1j * shape.imag.min()
     size = np.ptp(shape.real), np.ptp(shape.imag)
     width, height = BOX[0] - 60, BOX[1] - 44
@@ -78,8 +81,6 @@ def _nice(x):
 
 def profile(radii):
     """The meridian with its radii, the axis at the left."""
-    from ..surfaces import spline_profile
-
     box = 110, 150
     scale = min((box[0] - 16) / max(1.3, 1.1 * max(radii)), (box[1] - 16) / HEIGHTS[-1])
     parts = [_line(8 + 4j, 8 + 1j * (box[1] - 4), "axis", 1)]
@@ -107,21 +108,25 @@ def short(x, digits=2):
     return text.replace("-", "\u2212")
 
 
-def numbers(n, shown):
-    """`session.Numbers` as the page shows them: a dict of texts; shown: the choice they are of."""
+def numbers(about, V, Q):
+    """A `Report` on the net V, Q as the page shows it, angles in degrees: a dict of texts."""
+    theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
+    lam, mu = ratios(theta, theta0)
+    _, _, one, two = measure.vectors(V, Q)
+    medial = np.linalg.norm([one, two], axis=2)
     return {
-        "quads": f"{n.quads:,}".replace(",", "\u2009"),
-        "lam": f"{n.lam:.5g}",
-        "mu": f"{n.mu:.5g}",
-        "mean_theta": f"{n.mean_theta:.6f}",
-        "mean_theta0": f"{n.mean_theta0:.6f}",
-        "theta_off": short(n.theta_off),
-        "theta0_off": short(n.theta0_off),
-        "flips": str(n.flips),
-        "size_low": short(n.size_low, 3),
-        "size_high": short(n.size_high, 3),
-        "theta": f"{shown.theta:.10g}",
-        "theta0": f"{shown.theta0:.10g}",
+        "quads": f"{about.quads:,}".replace(",", "\u2009"),
+        "lam": f"{lam:.5g}",
+        "mu": f"{mu:.5g}",
+        "mean_theta": f"{np.degrees(about.theta.mean):.6f}",
+        "mean_theta0": f"{np.degrees(about.theta0.mean):.6f}",
+        "theta_off": short(np.degrees(about.theta.max_deviation)),
+        "theta0_off": short(np.degrees(about.theta0.max_deviation)),
+        "flips": str(about.flips),
+        "size_low": short(medial.min(), 3),
+        "size_high": short(medial.max(), 3),
+        "theta": f"{np.degrees(theta):.10g}",
+        "theta0": f"{np.degrees(theta0):.10g}",
     }
 
 
