@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from inetlib import examples, io, measure, surfaces
+from inetlib import examples, io, measure, mesh, surfaces, view
 from inetlib.explorer import choices, look, nets, notebook, plates
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.session import Session
@@ -863,6 +863,8 @@ def door(monkeypatch):
     """Stands for the server of the process: none is started."""
     fake = types.SimpleNamespace(port=4321, nets={})
     monkeypatch.setattr(notebook, "_open_door", lambda: fake)
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
     return fake
 
@@ -940,30 +942,31 @@ def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
     assert choices.parse(address.query) == (choice, [])
 
 
-def test_a_given_net_has_a_page_of_its_own(door):
-    V, Q = surfaces.freeform_patch(4, 3)
-    one = notebook.show_net(V, Q, ["v", "d2"])
-    two = notebook.show_net(V, Q, ())
+def families_of(*names):
+    """The polylines of the net PATCH with only these families."""
+    others = {name: [] for name in set(choices.FAMILIES) - set(names)}
+    return mesh.polylines(PATCH[1])._replace(**others)
+
+
+PATCH = surfaces.freeform_patch(4, 3)
+
+
+def test_a_given_net_has_a_page_of_its_own_with_the_families_that_have_curves(door):
+    one = notebook.turn(*PATCH, families_of("v", "d2"), live=True, view=(1.0, 0.2))
+    two = notebook.turn(*PATCH, families_of(), live=True)
     keys = [re.fullmatch(r"/net/(\w+)/index.html", urlsplit(x.address).path)[1] for x in (one, two)]
     assert list(door.nets) == keys and keys[0] != keys[1]
     for key in keys:
-        assert all(np.array_equal(a, b) for a, b in zip(door.nets[key], (V, Q), strict=True))
+        assert all(map(np.array_equal, door.nets[key], PATCH))
     for live, families in ((one, ("v", "d2")), (two, ())):
         assert choices.parse(urlsplit(live.address).query)[0].families == families
-    session = Session(net=(V, Q))
+    session = Session(net=PATCH)
     session.change(families=("v", "d2"))
-    assert one.picture == session.save(".png", *notebook.ROUND)
-
-
-def test_a_given_net_may_bring_its_own_picture_and_sight(door):
-    V, Q = surfaces.freeform_patch(4, 3)
-    mine = Session(net=(V, Q)).save(".png", 1.0, 0.2)
-    assert notebook.show_net(V, Q, picture=mine).picture == mine
-    assert notebook.show_net(V, Q, sight=(1.0, 0.2)).picture == mine
+    assert one.picture == session.save(".png", 1.0, 0.2)  # drawn without OpenGL
     with pytest.raises(ValueError, match="vertex"):
-        notebook.show_net(V[:-1], Q)
-    with pytest.raises(ValueError, match="families = 'w'"):
-        notebook.show_net(V, Q, ["u", "w"])
+        notebook.turn(PATCH[0][:-1], PATCH[1], live=True)
+    with pytest.raises(RuntimeError, match="no OpenGL"):
+        notebook.turn(*PATCH, live=False)
 
 
 @pytest.mark.parametrize("prefix", ["/user/ada/", "/hub/user/bob%40x/lab/"])
@@ -972,7 +975,7 @@ def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, pref
     start = f"{prefix}proxy/{door.port}/"
     live = notebook.show(live=True, m=4, n=4)
     assert live.address == f"{start}index.html?{choices.link(made(m=4, n=4).choice)}"
-    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    given = notebook.turn(*PATCH, live=True)
     (key,) = door.nets
     assert given.address.startswith(f"{start}net/{key}/index.html?")
 
@@ -990,9 +993,11 @@ def fetched(address):
 
 def test_a_live_page_answers_from_a_server_of_the_process(serve, monkeypatch):
     monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
     monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
     page = notebook.show(live=True, m=4, n=4)
-    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    given = notebook.turn(*PATCH, live=True)
     assert urlsplit(page.address).port == urlsplit(given.address).port  # one server for all
     for live in (page, given):
         status, text = fetched(live.address)
