@@ -1024,7 +1024,7 @@ def bars(root, row):
 def test_the_bars_of_the_histograms_count_the_faces_around_a_common_zero():
     values = {-0.37: 3, 0.0: 12, 0.15: 6, 0.3: 1}  # far apart
     theta = np.repeat(list(values), list(values.values()))
-    root = parsed(plates.histograms(theta, np.full(9, -0.1), (60, 45.5)))
+    root = parsed(plates.histograms((theta, np.full(9, -0.1)), (60, 45.5)))
     low, zero, high = (
         e
         for e in root.iter(SVG + "text")
@@ -1052,12 +1052,12 @@ def test_the_bars_of_the_histograms_count_the_faces_around_a_common_zero():
 def test_no_face_falls_out_of_the_histogram(most):
     spread = most * np.array([-1.0, -0.6, 0.0, 0.5, 1.0])
     for values in (spread, -spread):
-        root = parsed(plates.histograms(values, values[1:4], (60, 60)))
+        root = parsed(plates.histograms((values, values[1:4]), (60, 60)))
         assert len(bars(root, 0)[0]) == 5 and len(bars(root, 1)[0]) == 3
 
 
 def test_exact_nets_have_one_bar_in_the_middle():
-    root = parsed(plates.histograms(np.zeros(50), np.full(50, 1e-13), (60, 60)))
+    root = parsed(plates.histograms((np.zeros(50), np.full(50, 1e-13)), (60, 60)))
     width = float(root.get("viewBox").split()[2])
     for row in (0, 1):
         x, _ = bars(root, row)

@@ -221,7 +221,7 @@ class App:
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)
         state.histogram_svg = plates.histograms(
-            *session.deviations(), (session.shown.theta, session.shown.theta0)
+            session.deviations(), (session.shown.theta, session.shown.theta0)
         )
 
     def _plates(self):
