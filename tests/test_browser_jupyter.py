@@ -16,9 +16,9 @@ from inetlib import explorer
 
 pytestmark = pytest.mark.browser
 CELLS = [
-    "from inetlib import explorer, surfaces, view",
+    "from inetlib import explorer, surfaces",
     "explorer.show(kind='revolution', m=12, n=10, theta=75)",
-    "view.show(*surfaces.freeform_patch(8, 8))",
+    "explorer.turn(*surfaces.freeform_patch(8, 8))",
 ]
 
 

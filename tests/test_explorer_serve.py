@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from inetlib import examples, io, measure, surfaces
+from inetlib import examples, io, measure, mesh, surfaces, view
 from inetlib.explorer import choices, look, nets, notebook, plates
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.session import Session
@@ -153,7 +153,7 @@ def made(**values):
 
 
 def texts(session):
-    return plates.numbers(session.numbers(), session.shown)
+    return plates.numbers(session.report, session.V, session.Q)
 
 
 def echo(choice):
@@ -172,7 +172,7 @@ async def test_a_tab_shows_the_net_of_its_link(app):
     assert np.array_equal(app.session.V, alone.V)
     assert app.state.numbers == texts(alone) and app.state.message == alone.message
     assert shown(app) == echo(alone.choice)
-    assert app.state.link == alone.link() and app.state.code == alone.code()
+    assert app.state.link == choices.link(alone.choice) and app.state.code == alone.code()
     assert app.state.alert == app.state.problem == ""
     for words in (app.state.parallelogram_svg, app.state.histogram_svg, app.state.profile_svg):
         assert words.startswith("<svg")
@@ -197,7 +197,7 @@ async def test_a_change_of_the_page_changes_net_numbers_code_and_link(app, name)
     await arrived(app, "?m=6&n=5")
     await change(app, **CHANGES[name])
     alone = made(**{"m": 6, "n": 5} | CHANGES[name])
-    await until(lambda: app.state.link == alone.link())
+    await until(lambda: app.state.link == choices.link(alone.choice))
     await until(lambda: app.state.numbers == texts(alone))
     assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
     assert shown(app) == echo(alone.choice) and app.state.alert == ""
@@ -279,7 +279,7 @@ async def test_what_is_only_shown_is_not_made_again(app):
 
 async def test_what_goes_wrong_unexpectedly_is_said(app, monkeypatch, capsys):
     await arrived(app, "?m=4&n=4")
-    monkeypatch.setattr(nets, "construct", lambda choice: [][1])
+    monkeypatch.setattr(nets, "make", lambda choice: [][1])
     await change(app, theta=70)
     await until(lambda: app.state.problem)
     assert "list index out of range" in app.state.problem
@@ -380,7 +380,7 @@ async def test_a_search_that_breaks_unexpectedly_is_over_too(app, quick, monkeyp
         raise RuntimeError("a factor is singular")
 
     await arrived(app, "?m=4&n=4")
-    monkeypatch.setattr(nets, "find", broken)
+    monkeypatch.setattr(nets, "make", broken)
     await change(app, kind="freeform")
     await until(lambda: app.state.problem)
     await asyncio.sleep(0.05)
@@ -506,7 +506,7 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
 @pytest.mark.parametrize("call", ["fit", "from_above", "from_side"])
 async def test_every_view_shows_the_whole_net_and_not_much_else(app, call, aspect):
     await arrived(app, "?kind=revolution&m=7&n=5")
-    getattr(app, call)(aspect)
+    app.look(call, aspect)
     camera = app.scene.plotter.camera
     towards = np.array(camera.position) - camera.focal_point
     towards /= np.linalg.norm(towards)
@@ -863,6 +863,8 @@ def door(monkeypatch):
     """Stands for the server of the process: none is started."""
     fake = types.SimpleNamespace(port=4321, nets={})
     monkeypatch.setattr(notebook, "_open_door", lambda: fake)
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
     return fake
 
@@ -940,30 +942,31 @@ def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
     assert choices.parse(address.query) == (choice, [])
 
 
-def test_a_given_net_has_a_page_of_its_own(door):
-    V, Q = surfaces.freeform_patch(4, 3)
-    one = notebook.show_net(V, Q, ["v", "d2"])
-    two = notebook.show_net(V, Q, ())
+def families_of(*names):
+    """The polylines of the net PATCH with only these families."""
+    others = {name: [] for name in set(choices.FAMILIES) - set(names)}
+    return mesh.polylines(PATCH[1])._replace(**others)
+
+
+PATCH = surfaces.freeform_patch(4, 3)
+
+
+def test_a_given_net_has_a_page_of_its_own_with_the_families_that_have_curves(door):
+    one = notebook.turn(*PATCH, families_of("v", "d2"), live=True, view=(1.0, 0.2))
+    two = notebook.turn(*PATCH, families_of(), live=True)
     keys = [re.fullmatch(r"/net/(\w+)/index.html", urlsplit(x.address).path)[1] for x in (one, two)]
     assert list(door.nets) == keys and keys[0] != keys[1]
     for key in keys:
-        assert all(np.array_equal(a, b) for a, b in zip(door.nets[key], (V, Q), strict=True))
+        assert all(map(np.array_equal, door.nets[key], PATCH))
     for live, families in ((one, ("v", "d2")), (two, ())):
         assert choices.parse(urlsplit(live.address).query)[0].families == families
-    session = Session(net=(V, Q))
+    session = Session(net=PATCH)
     session.change(families=("v", "d2"))
-    assert one.picture == session.save(".png", *notebook.ROUND)
-
-
-def test_a_given_net_may_bring_its_own_picture_and_sight(door):
-    V, Q = surfaces.freeform_patch(4, 3)
-    mine = Session(net=(V, Q)).save(".png", 1.0, 0.2)
-    assert notebook.show_net(V, Q, picture=mine).picture == mine
-    assert notebook.show_net(V, Q, sight=(1.0, 0.2)).picture == mine
+    assert one.picture == session.save(".png", 1.0, 0.2)  # drawn without OpenGL
     with pytest.raises(ValueError, match="vertex"):
-        notebook.show_net(V[:-1], Q)
-    with pytest.raises(ValueError, match="families = 'w'"):
-        notebook.show_net(V, Q, ["u", "w"])
+        notebook.turn(PATCH[0][:-1], PATCH[1], live=True)
+    with pytest.raises(RuntimeError, match="no OpenGL"):
+        notebook.turn(*PATCH, live=False)
 
 
 @pytest.mark.parametrize("prefix", ["/user/ada/", "/hub/user/bob%40x/lab/"])
@@ -971,8 +974,8 @@ def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, pref
     monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", prefix)
     start = f"{prefix}proxy/{door.port}/"
     live = notebook.show(live=True, m=4, n=4)
-    assert live.address == f"{start}index.html?{made(m=4, n=4).link()}"
-    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    assert live.address == f"{start}index.html?{choices.link(made(m=4, n=4).choice)}"
+    given = notebook.turn(*PATCH, live=True)
     (key,) = door.nets
     assert given.address.startswith(f"{start}net/{key}/index.html?")
 
@@ -990,9 +993,11 @@ def fetched(address):
 
 def test_a_live_page_answers_from_a_server_of_the_process(serve, monkeypatch):
     monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
     monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
     page = notebook.show(live=True, m=4, n=4)
-    given = notebook.show_net(*surfaces.freeform_patch(3, 3))
+    given = notebook.turn(*PATCH, live=True)
     assert urlsplit(page.address).port == urlsplit(given.address).port  # one server for all
     for live in (page, given):
         status, text = fetched(live.address)

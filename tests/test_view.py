@@ -6,6 +6,7 @@ import subprocess
 import sys
 import types
 import warnings
+from functools import cache
 
 import numpy as np
 import pytest
@@ -20,11 +21,9 @@ ABOVE = (-np.pi / 2, np.pi / 2)  # x to the right, y up
 
 
 @pytest.fixture
-def fresh():
-    """`available` forgets what it found, before and after."""
-    view.available.cache_clear()
-    yield
-    view.available.cache_clear()
+def fresh(monkeypatch):
+    """`available` has found nothing yet; what it found for other tests is kept."""
+    monkeypatch.setattr(view, "available", cache(view.available.__wrapped__))
 
 
 @pytest.fixture
@@ -58,10 +57,9 @@ def test_without_pyvista_the_message_names_the_extra(monkeypatch, fresh):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     works, sentence = view.available()
     assert not works
-    for call in (view.scene, view.picture):
-        with pytest.raises(ImportError, match="install the extra `view`") as caught:
-            call(V, Q)
-        assert str(caught.value) == sentence
+    with pytest.raises(ImportError, match="install the extra `view`") as caught:
+        view.scene(V, Q)
+    assert str(caught.value) == sentence
 
 
 @pytest.mark.parametrize("end", ["raise SystemExit(1)", "import os; os.abort()", "1 / 0"])
@@ -72,7 +70,7 @@ def test_a_trial_that_fails_or_dies_becomes_a_sentence(monkeypatch, fresh, end):
     assert not works
     assert "libegl1 and libgl1-mesa-dri" in sentence and "inetlib.plot" in sentence
     with pytest.raises(RuntimeError, match="cannot draw off screen here"):
-        view.picture(V, Q)
+        view.scene(V, Q)
 
 
 def test_a_trial_that_hangs_becomes_a_sentence(monkeypatch, fresh):
@@ -132,11 +130,11 @@ def test_egl_is_asked_for_on_linux_without_a_display(monkeypatch, platform, disp
         (False, False, False, "still"),
     ],
 )
-def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
-    shown = types.SimpleNamespace(show=lambda: "window")
-    monkeypatch.setattr(view, "scene", lambda *_, live=False: shown if live else 1 / 0)
+def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live):
+    window = types.SimpleNamespace(show=lambda: "window")
+    monkeypatch.setattr(view, "scene", lambda *_, live=False: window if live else None)
     still = np.full((view.SIZE[1], view.SIZE[0], 3), 77, dtype=np.uint8)
-    monkeypatch.setattr(view, "picture", lambda *_: still)
+    monkeypatch.setattr(view, "picture", lambda _: still)
     monkeypatch.setattr(view, "available", lambda: (True, ""))
     monkeypatch.setattr(view, "headless", lambda: not display)
     door = types.SimpleNamespace(port=1, nets={})
@@ -147,15 +145,10 @@ def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     if not kernel:
         monkeypatch.delitem(sys.modules, "ipykernel")
-    result = explorer.turn(V, Q) if kernel else view.show(V, Q)
     kinds = {str: "window", explorer.notebook.Live: "page"}
-    assert live == kinds.get(type(result), "still")
-    fixed = view.show(V, Q, live=False)
-    if kernel:
-        assert isinstance(explorer.turn(V, Q, live=True), explorer.notebook.Live)
-        assert explorer.turn(V, Q, live=False).data == fixed.data == view.show(V, Q).data
-    else:
-        assert view.show(V, Q, live=True) == "window"
+    result, forced, fixed = (explorer.turn(V, Q, live=x) for x in (None, True, False))
+    assert kinds.get(type(result), "still") == live
+    assert kinds[type(forced)] == ("page" if kernel else "window")
     decoded = imread(io.BytesIO(fixed.data), format="png")
     np.testing.assert_allclose(decoded[..., :3] * 255, still, atol=1e-4)
     if live == "page":
@@ -163,19 +156,12 @@ def test_show_is_live_for_a_person(monkeypatch, kernel, session, display, live):
         np.testing.assert_array_equal([W[0] for W in door.nets.values()], [V, V])
 
 
-def test_a_live_page_shows_the_families_that_have_curves(monkeypatch):
-    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
-    door = types.SimpleNamespace(port=1, nets={})
-    monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
-    families = mesh.polylines(Q)._replace(u=[], d1=[])
-    page = explorer.turn(V, Q, families, live=True)
-    assert page.address.endswith("?families=v,d2")
-    assert imread(io.BytesIO(page.picture), format="png").std() > 0.05  # drawn without OpenGL
-    with pytest.raises(RuntimeError, match="no OpenGL"):
-        explorer.turn(V, Q, families, live=False)
-
-
 # --- with both ----------------------------------------------------------------------------
+
+
+def drawn(*options, **more):
+    """The picture of a scene."""
+    return view.picture(view.scene(*options, **more))
 
 
 def share(image, colour):
@@ -186,18 +172,18 @@ def share(image, colour):
 
 
 def test_a_picture_is_white_around_a_net_in_four_colours(opengl):
-    image = view.picture(V, Q)
+    image = drawn(V, Q)
     assert image.shape == (view.SIZE[1], view.SIZE[0], 3) and image.dtype == np.uint8
     corners = image[[0, 0, -1, -1], [0, -1, 0, -1]]
     np.testing.assert_array_equal(corners, 255)
     for colour in plot.COLOURS.values():
         assert share(image, colour) > 0.002
-    np.testing.assert_array_equal(view.picture(V, Q), image)
+    np.testing.assert_array_equal(drawn(V, Q), image)
 
 
 def test_an_empty_family_is_not_drawn_and_colours_can_be_chosen(opengl):
     families = mesh.polylines(Q)._replace(d1=[], v=[])
-    image = view.picture(V, Q, families, {"u": "#ff00ff"}, width=0.01)
+    image = drawn(V, Q, families, {"u": "#ff00ff"}, width=0.01)
     assert share(image, "#ff00ff") > 0.01 and share(image, plot.COLOURS["d2"]) > 0.01
     for name in ("u", "v", "d1"):
         assert share(image, plot.COLOURS[name]) < 0.0005  # blends of the others
@@ -206,14 +192,14 @@ def test_an_empty_family_is_not_drawn_and_colours_can_be_chosen(opengl):
 def test_curves_may_be_points_as_well_as_vertex_indices(opengl):
     indices = mesh.polylines(Q)
     points = mesh.Families(*([V[line] for line in lines] for lines in indices))
-    np.testing.assert_array_equal(view.picture(V, Q, points), view.picture(V, Q, indices))
+    np.testing.assert_array_equal(drawn(V, Q, points), drawn(V, Q, indices))
 
 
 @pytest.mark.parametrize("stretch", [1, 3])
 def test_the_net_fills_the_picture_in_its_proportions_and_the_right_way_round(opengl, stretch):
     flat = V * [stretch, 1, 0]
     corner = mesh.Families([flat[[15, 11]]], [], [], [])  # right end, uppermost edge
-    image = view.picture(flat, Q, corner, {"face": "black"}, width=0.01, view=ABOVE)
+    image = drawn(flat, Q, corner, {"face": "black"}, width=0.01, view=ABOVE)
     y, x = np.nonzero((image < 250).any(axis=-1))
     wide, high = np.ptp(x) + 1, np.ptp(y) + 1
     assert wide / high == pytest.approx(3.9 * stretch / 3, rel=0.03)
@@ -227,7 +213,7 @@ def test_the_net_fills_the_picture_in_its_proportions_and_the_right_way_round(op
 
 def test_a_mesh_that_is_none_is_refused_before_anything_is_drawn(pyvista):
     with pytest.raises(ValueError, match="face 8 names vertex 15"):
-        view.picture(V[:15], Q)
+        view.scene(V[:15], Q)
 
 
 def test_a_scene_is_a_plotter_with_one_actor_a_family_and_the_faces(opengl, pyvista):

@@ -5,7 +5,7 @@ page, `look` and `plates` say how things are drawn; `scene`, `page`, `app` and `
 page, and need the packages of the extra `view`.
 """
 
-__all__ = ["person", "show", "show_net", "turn"]
+__all__ = ["show", "turn"]
 
 
 def __getattr__(name):

@@ -3,6 +3,7 @@
 import asyncio
 import time
 import traceback
+from functools import partial
 from math import atan2, hypot, radians
 
 from trame.app import get_server
@@ -14,6 +15,12 @@ from .session import SAVED, Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
+NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
+SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
+EMPTY = "alert", "problem", "message", "progress", "code", "link"
+DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
+OFF = "dark", "searching", "can_search", "code_open", "help_open"
+START = dict.fromkeys((*EMPTY, *DRAWN), "") | dict.fromkeys(OFF, False) | {"numbers": {}}
 
 
 class App:
@@ -30,13 +37,17 @@ class App:
         self.aspect, self.sight, self.fitted = 1.0, None, None
         self._task = self._search = None
         self._remake = False
-        self._fill()
+        self.state.trame__title = "Isogonal nets"
+        self.state.update(START)
+        self._dress()
+        self._echo()
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
-        calls = self.arrive, self.save, self.run, self.stop
-        for call in (*calls, self.fit, self.refit, self.from_above, self.from_side):
+        for call in (self.arrive, self.save, self.run, self.stop):
             self.server.trigger(call.__name__)(call)
+        for name in ("fit", "refit", "from_above", "from_side"):
+            self.server.trigger(name)(partial(self.look, name))
 
     def close(self):
         """Forget the tab: end its search, free its memory, once."""
@@ -50,33 +61,25 @@ class App:
             scene.give_back(self.scene)
             self.scene = None
 
-    # --- what the page knows --------------------------------------------------------------
+    # --- what the page knows and does -----------------------------------------------------
 
-    def _fill(self):
-        """The state before a browser is there."""
-        self.state.trame__title = "Isogonal nets"
-        words = ("alert", "problem", "message", "progress", "code", "link")
-        self.state.update(dict.fromkeys(words, ""))
-        self.state.update(
-            dict.fromkeys(("searching", "can_search", "code_open", "help_open"), False)
-        )
-        self.state.update(dict.fromkeys(("parallelogram_svg", "histogram_svg", "profile_svg"), ""))
-        self.state.update({"dark": False, "numbers": {}})
-        self._dress()
-        self._echo()
+    def _chosen(self):
+        """The choice as the state holds it: lists, no tuples."""
+        values = vars(self.session.choice).items()
+        return {name: list(x) if isinstance(x, tuple) else x for name, x in values}
 
     def _echo(self):
         """Show the choice as it is, whatever was typed."""
-        for name in choices.NAMES:
-            value = getattr(self.session.choice, name)
-            self.state[name] = list(value) if isinstance(value, tuple) else value
+        self.state.update(self._chosen())
 
     def _dress(self):
         palette = look.DARK if self.state.dark else look.LIGHT
         self.state.colours = palette.families
         self.state.palette = "; ".join(f"--ex-{k}: {v}" for k, v in palette.families.items())
 
-    # --- what the page does ---------------------------------------------------------------
+    def _dressed(self, **_):
+        self._dress()
+        self._soon(False)
 
     def arrive(self, query, dark, aspect):
         """A browser has opened the page: take the link's values, and show the net."""
@@ -89,22 +92,14 @@ class App:
 
     def _changed(self, **_):
         before = self.session.choice
-        values = {name: self.state[name] for name in choices.NAMES}
-        now = {k: list(v) if isinstance(v, tuple) else v for k, v in vars(before).items()}
-        values = {k: v for k, v in values.items() if v != now[k]}
-        if not values:
-            return
-        self._tell(self.session.change(**values))
-        self._echo()
-        remake = set(values) - set(choices.SHOWN)
+        values = {k: self.state[k] for k, x in self._chosen().items() if self.state[k] != x}
+        if values:
+            self._tell(self.session.change(**values))
+            self._echo()
         if self.session.choice != before:
-            if {"kind", "map", "surface", "source", "moebius"} & set(values):
+            if NEW_PLACE & set(values):
                 self.sight = self.fitted = None
-            self._soon(bool(remake))
-
-    def _dressed(self, **_):
-        self._dress()
-        self._soon(False)
+            self._soon(not set(values) <= set(choices.SHOWN))
 
     def _tell(self, problems):
         if problems:
@@ -135,37 +130,18 @@ class App:
 
     # --- the camera -----------------------------------------------------------------------
 
-    def fit(self, aspect=None):
-        """See the whole net, from where it is seen by default."""
-        kind = "cover" if self.session.given else self.session.choice.kind
-        self._look(scene.sight(kind, self.session.V), aspect)
+    def look(self, name, aspect=None):
+        """See the whole net: "from_above", "from_side", or "fit": from where it is by default.
 
-    def refit(self, aspect):
-        """The first scene is there: see the whole net from where it was to be seen."""
-        self._look(self.sight, aspect)
-
-    def from_above(self, aspect=None):
-        """See the whole net from above."""
-        self._look(scene.VIEWS["plane"], aspect)
-
-    def from_side(self, aspect=None):
-        """See the whole net from the side."""
-        self._look((-60.0, 15.0), aspect)
-
-    def _look(self, sight, aspect=None):
+        "refit" when the first scene is there: from where it was to be seen.
+        """
         self.aspect = float(aspect or self.aspect)
-        V = self.session.V
-        if V is None or sight is None:
-            return
-        self.sight, self.fitted = sight, V
-        self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
-
-    def _look_if_lost(self):
-        """Fit the net where it is new, or much larger or smaller than when it was fitted."""
-        if self.fitted is None:
-            self.fit()
-        elif scene.is_lost(self.session.V, self.fitted):
-            self._look(self.sight)
+        V, sight = self.session.V, SIGHTS.get(name, self.sight)
+        if name == "fit":
+            sight = scene.sight("cover" if self.session.given else self.session.choice.kind, V)
+        if V is not None and sight is not None:
+            self.sight, self.fitted = sight, V
+            self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
 
     # --- keeping in step ------------------------------------------------------------------
 
@@ -199,16 +175,13 @@ class App:
             if self._search is not None:
                 self._search.cancel()
             self.state.searching = search
-            if search:
-                self._search = self._begin(self._find())
-            else:
-                self.session.construct()
+        if search:
+            self._search = self._begin(self._find())
+            self.state.progress = "preparing \u2026"
+        elif remake:
+            self.session.construct()
         with self.state:
-            if search:
-                self.state.progress = "preparing \u2026"
-                self._plates()
-            else:
-                self._show()
+            (self._plates if search else self._show)()
 
     async def _find(self):
         """Search for the net of the choice, when the changes have come to rest."""
@@ -242,17 +215,21 @@ class App:
         shade = session.colours() if session.choice.shade else None
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade)
         self.view.update()
-        self._look_if_lost()
-        state.numbers = plates.numbers(session.numbers(), session.shown)
+        if self.fitted is None:
+            self.look("fit")
+        elif scene.is_lost(session.V, self.fitted):
+            self.look("refit")
+        state.numbers = plates.numbers(session.report, session.V, session.Q)
         state.histogram_svg = plates.histograms(
-            *session.deviations(), (session.shown.theta, session.shown.theta0)
+            session.deviations(), (session.shown.theta, session.shown.theta0)
         )
 
     def _plates(self):
-        choice = self.session.choice
-        angles = radians(choice.theta), radians(choice.theta0)
-        self.state.parallelogram_svg = plates.parallelogram(*angles)
-        self.state.profile_svg = plates.profile(choice.radii)
-        self.state.code, self.state.link = self.session.code(), self.session.link()
+        choice, state = self.session.choice, self.state
+        state.parallelogram_svg = plates.parallelogram(
+            radians(choice.theta), radians(choice.theta0)
+        )
+        state.profile_svg = plates.profile(choice.radii)
+        state.code, state.link = self.session.code(), choices.link(choice)
         if self.server.protocol and not self.session.given:
-            self.server.js_call("address", "exec", self.state.link)
+            self.server.js_call("address", "exec", state.link)

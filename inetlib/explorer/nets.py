@@ -10,31 +10,14 @@ from .. import examples, parallelogram
 from .choices import HEIGHTS, Choice
 
 FOUND = "freeform", "cover"  # by optimisation; all others are constructed
-DISKS = {  # centre and radius of the disk that the grid fills, in the plane of the parameters
-    "identity": (0j, 1.0),
+DISKS = {  # centre and radius of the disk that the grid fills, if it is not the unit disk
     "square": (1.2 + 0.5j, 1.0),
-    "inverse": (1.5 + 0j, 1.0),
-    "exp": (0j, 1.5),
-    "moebius": (0j, 1.0),
-    "minimal": (0j, 2.6),
-    "sphere": (0j, 2.4),
-    "rolled": (0j, 1.0),
+    "inverse": (1.5, 1.0),
+    "exp": (0, 1.5),
+    "minimal": (0, 2.6),
+    "sphere": (0, 2.4),
 }
 IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
-GRID = "z = conformal.sheared_grid({theta}, {theta0}, {m}, {n}, {origin}, {edge})"
-ROLLED = "z = developable.rolled_grid({theta}, {theta0}, {m}, {n}, {curvature}, {origin}, {edge})"
-MAPS = {
-    "identity": "z",
-    "square": "z**2",
-    "inverse": "1 / z",
-    "exp": "np.exp(z)",
-    "moebius": "conformal.moebius([[0, 1], [1, {pole}]], z)",
-}
-POINTS = {
-    "minimal": "surfaces.conjugate({bend}).point(z.real, z.imag)",
-    "sphere": "surfaces.SPHERE.point(z.real, z.imag)",
-    "rolled": "developable.roll(z, {curvature})",
-}
 
 
 class Made(NamedTuple):
@@ -58,6 +41,81 @@ class Recipe(NamedTuple):
     take: str = "V, Q = {net}"
 
 
+GRID = "z = conformal.sheared_grid({theta}, {theta0}, {m}, {n}, {origin}, {edge})"
+ROLLED = "z = developable.rolled_grid({theta}, {theta0}, {m}, {n}, {curvature}, {origin}, {edge})"
+MAPS = {
+    "identity": "z",
+    "square": "z**2",
+    "inverse": "1 / z",
+    "exp": "np.exp(z)",
+    "moebius": "conformal.moebius([[0, 1], [1, {pole}]], z)",
+}
+POINTS = {
+    "minimal": "surfaces.conjugate({bend}).point(z.real, z.imag)",
+    "sphere": "surfaces.SPHERE.point(z.real, z.imag)",
+    "rolled": "developable.roll(z, {curvature})",
+}
+RECIPES = {
+    "revolution": Recipe(
+        "loxodrome, surfaces",
+        "profile = surfaces.spline_profile({points})",
+        "loxodrome.web(profile, {theta}, {theta0}, {m}, {n})",
+        "exact: {0.message}",
+        "V, Q = {net}[:2]",
+    ),
+    "freeform": Recipe(
+        "reference, solver, surfaces",
+        "V, Q = surfaces.freeform_patch({m}, {n})",
+        "solver.optimize(V, Q, {theta}, {theta0}, reference=reference.mesh(V, Q){callback})",
+        "{0.message}",
+        "V = {net}.V",
+    ),
+    "cover": Recipe(
+        "design, io",
+        "surface = io.surface({path})",
+        "design.cover(*surface[:2], {theta}, {theta0}, "
+        "count={quads}, direction={direction}{callback})",
+        "{0.report.message}",
+        "V, Q = {net}[:2]",
+    ),
+}
+
+
+def _recipe(choice):
+    if choice.kind == "plane":
+        return _plane(choice.map)
+    if choice.kind == "isothermal":
+        return _isothermal(choice.surface, choice.moebius)
+    recipe = RECIPES[choice.kind]
+    if choice.kind == "cover" and choice.source != "file":
+        example = f"surface = examples.{examples.SURFACES[choice.source].__name__}()"
+        recipe = recipe._replace(rooms="design, examples", start=example)
+    return recipe
+
+
+def _plane(name):
+    start, message = GRID, "exact: this map keeps both angles of finite quads (B6)"
+    if name == "exp":
+        start = GRID.replace("{edge}", "{edge}, kappa=1")
+    if name in ("inverse", "moebius"):
+        message = "conformal image: the angles are those of a smooth net, "
+        message += "up to the square of the edge"
+    return Recipe("conformal", start, f"conformal.quads({MAPS[name]})", message)
+
+
+def _isothermal(name, inverted):
+    rooms, start, points = "mesh, conformal, surfaces", GRID, POINTS[name]
+    message = "sampled from a smooth net: off by about the square of the edge"
+    if name == "rolled":
+        rooms, start = "mesh, developable", ROLLED
+        message = "exact: both angles hold on the bent sheet"
+    if inverted:
+        rooms += ", moebius"
+        points = "moebius.apply(moebius.inversion(({px}, {py}, {pz})), " + points + ")"
+        message = "sampled from a smooth net, then inverted in a sphere around the pole"
+    return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
+
+
 def make(
     choice: Choice, surface: tuple | None = None, callback: Callable = lambda *_: None
 ) -> Made:
@@ -66,7 +124,7 @@ def make(
     surface: `io.Surface`, that of the file; callback(step, V, Q) sees the start of an
     optimisation, with the step None, and every step, and may return False to end it.
     """
-    recipe, values = RECIPES[choice.kind](choice), _values(choice)
+    recipe, values = _recipe(choice), _values(choice)
     names = {k: np.radians(x) if k in IN_DEGREES else x for k, x in values.items()}
     names |= {"np": np, "callback": callback, "surface": surface}
     # What runs is the recipe's own text with these names: no value becomes a part of it.
@@ -89,7 +147,7 @@ def make(
 
 def code(choice: Choice, path: object = "surface.obj") -> str:
     """Three lines of Python that make the net, V and Q; path: of the surface's file."""
-    recipe = RECIPES[choice.kind](choice)
+    recipe = _recipe(choice)
     words = {name: _said(name, x) for name, x in _values(choice, path).items()} | {"callback": ""}
     words["net"] = recipe.net.format_map(words)
     lines = recipe.start.format_map(words), recipe.take.format_map(words)
@@ -108,7 +166,7 @@ def _values(choice, path=None):
         "path": str(path),
     }
     name = {"plane": choice.map, "isothermal": choice.surface}.get(choice.kind)
-    return values | (_grid(choice, *DISKS[name]) if name else {})
+    return values | (_grid(choice, *DISKS.get(name, (0, 1.0))) if name else {})
 
 
 def _grid(choice, centre, radius):
@@ -131,73 +189,3 @@ def _grid(choice, centre, radius):
 
 def _rounded(number, digits=6):
     return float(f"{number:.{digits}g}")
-
-
-# --- the recipes --------------------------------------------------------------------------
-
-
-def _plane(choice):
-    start, message = GRID, "exact: this map keeps both angles of finite quads (B6)"
-    if choice.map == "exp":
-        start = GRID.replace("{edge}", "{edge}, kappa=1")
-    if choice.map in ("inverse", "moebius"):
-        message = (
-            "conformal image: the angles are those of a smooth net, up to the square of the edge"
-        )
-    return Recipe("conformal", start, f"conformal.quads({MAPS[choice.map]})", message)
-
-
-def _isothermal(choice):
-    rooms, start, points = "mesh, conformal, surfaces", GRID, POINTS[choice.surface]
-    message = "sampled from a smooth net: off by about the square of the edge"
-    if choice.surface == "rolled":
-        rooms, start = "mesh, developable", ROLLED
-        message = "exact: both angles hold on the bent sheet"
-    if choice.moebius:
-        rooms += ", moebius"
-        points = "moebius.apply(moebius.inversion(({px}, {py}, {pz})), " + points + ")"
-        message = "sampled from a smooth net, then inverted in a sphere around the pole"
-    return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
-
-
-def _revolution(_):
-    return Recipe(
-        "loxodrome, surfaces",
-        "profile = surfaces.spline_profile({points})",
-        "loxodrome.web(profile, {theta}, {theta0}, {m}, {n})",
-        "exact: {0.message}",
-        "V, Q = {net}[:2]",
-    )
-
-
-def _freeform(_):
-    return Recipe(
-        "reference, solver, surfaces",
-        "V, Q = surfaces.freeform_patch({m}, {n})",
-        "solver.optimize(V, Q, {theta}, {theta0}, reference=reference.mesh(V, Q){callback})",
-        "{0.message}",
-        "V = {net}.V",
-    )
-
-
-def _cover(choice):
-    room, surface = "io", "io.surface({path})"
-    if choice.source != "file":
-        room, surface = "examples", f"examples.{examples.SURFACES[choice.source].__name__}()"
-    options = "count={quads}, direction={direction}{callback}"
-    return Recipe(
-        f"design, {room}",
-        f"surface = {surface}",
-        "design.cover(*surface[:2], {theta}, {theta0}, " + options + ")",
-        "{0.report.message}",
-        "V, Q = {net}[:2]",
-    )
-
-
-RECIPES = {
-    "plane": _plane,
-    "isothermal": _isothermal,
-    "revolution": _revolution,
-    "freeform": _freeform,
-    "cover": _cover,
-}

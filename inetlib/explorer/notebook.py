@@ -2,12 +2,15 @@
 
 import asyncio
 import base64
+import io
 import os
 import secrets
 import sys
 import threading
+from typing import Any
 
 import numpy as np
+import PIL.Image
 
 from .. import mesh
 from .. import view as shaded
@@ -38,7 +41,7 @@ class Live:
         return {"text/html": page, "image/png": data, "text/plain": self.address}
 
 
-def show(height=640, live=None, **values):
+def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     """The explorer in a notebook: `explorer.show(kind="revolution", theta=75, theta0=60)`.
 
     values: those of `choices.Choice`, angles in degrees; ValueError for what is no such value.
@@ -46,8 +49,7 @@ def show(height=640, live=None, **values):
     page, or a still IPython Image.
     """
     session = Session()
-    if problems := session.change(**values):
-        raise ValueError("; ".join(problems))
+    _change(session, **values)
     if session.must_search:
         session.search(session.begin())
     else:
@@ -56,48 +58,66 @@ def show(height=640, live=None, **values):
         raise ValueError(session.problem)
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
     if not (person() if live is None else live):
-        from IPython.display import Image
-
-        return Image(data=picture, format="png", width=640)
+        return _still(picture, width=640)
     address = f"{_address(_open_door().port)}index.html?{choices.link(session.choice)}"
     return Live(address, picture, height)
 
 
-def show_net(V, Q, families=("u", "v"), sight=ROUND, height=480, picture=None):
-    """A net as a `Live` page of a notebook, with the numbers of the explorer beside it.
+def turn(
+    V: np.ndarray,
+    Q: np.ndarray,
+    families: mesh.Families | None = None,
+    colours: dict | None = None,
+    width: float = 0.0035,
+    view: tuple = (-1.0, 0.5),
+    live: bool | None = None,
+) -> Any:
+    """The `view.scene` of a net for a reader, to be turned by hand, or as a still IPython Image.
 
-    V: (n, 3), Q: (f, 4); families: names; sight: azimuth and elevation of the still picture,
-    radians; picture: another one, PNG bytes.  ValueError for arrays that are no net and for
-    names of no family.
+    live: True, False, or by default True when there is a person before it: in JupyterLab, where
+    the net becomes a `Live` page that the browser draws (in its own colours and widths, with the
+    families that have curves), or a script with a display, where it opens a window.  A notebook
+    that a tool runs keeps a still picture.  ValueError for arrays that are no net.
     """
-    session = Session(net=(V, Q))
-    if problems := session.change(families=families):
-        raise ValueError("; ".join(problems))
-    picture = picture or session.save(".png", *sight)
-    query = "?families=" + ",".join(session.choice.families)
-    door, key = _open_door(), secrets.token_hex(8)
+    notebook = "ipykernel" in sys.modules
+    if live is None:
+        live = person() if notebook else not shaded.headless()
+    if live and not notebook:
+        return shaded.scene(V, Q, families, colours, width, view, live=True).show()
+    picture = None
+    if not live or shaded.available()[0]:  # the page needs no OpenGL
+        picture = _png(shaded.picture(shaded.scene(V, Q, families, colours, width, view)))
+    if not live:
+        return _still(picture)
+    session, door, key = Session(net=(V, Q)), _open_door(), secrets.token_hex(8)
+    drawn = mesh.polylines(session.Q) if families is None else families
+    _change(session, families=[name for name, lines in drawn._asdict().items() if len(lines)])
     door.nets[key] = session.V, session.Q
-    return Live(f"{_address(door.port)}net/{key}/index.html{query}", picture, height)
+    query = "families=" + ",".join(session.choice.families)
+    address = f"{_address(door.port)}net/{key}/index.html?{query}"
+    return Live(address, picture or session.save(".png", *view), height=480)
 
 
-def turn(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None):
-    """The shaded `view.scene` of a net in a notebook, to be turned by hand, or as a still picture.
-
-    live: True, False, or by default True where a person runs the notebook: then the net is a
-    page that the browser draws, with the families that have curves, in its own colours and
-    widths, and `show_net` has the picture.  A notebook that a tool runs keeps the picture.
-    """
-    drawn = V, Q, families, colours, width, view
-    if not (person() if live is None else live):
-        return shaded.show(*drawn, live=False)
-    names = mesh.Families._fields
-    if families is not None:
-        names = [name for name in names if len(getattr(families, name))]
-    picture = shaded.png(*drawn) if shaded.available()[0] else None
-    return show_net(V, Q, names, view, picture=picture)
+def _change(session, **values):
+    if problems := session.change(**values):
+        raise ValueError("; ".join(problems))
 
 
-def person():
+def _png(image):
+    """The bytes of a small file with an RGB picture."""
+    file = io.BytesIO()
+    small = PIL.Image.fromarray(image).quantize(192, dither=PIL.Image.Dither.NONE)
+    small.save(file, format="png", optimize=True)
+    return file.getvalue()
+
+
+def _still(picture, width=None):
+    from IPython.display import Image
+
+    return Image(data=picture, format="png", width=width)
+
+
+def person() -> bool:
     """Whether somebody runs this notebook by hand: a kernel of a Jupyter server has a name."""
     return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
 

@@ -40,7 +40,7 @@ def _select(name, label, condition="true"):
 
 def _number(name, label, low=None, high=None, condition="true"):
     """A label, a slider and a field for the same value."""
-    bounds = choices.RANGES[name]
+    bounds = choices.ALLOWED[name]
     ends = {"min": (f"{bounds.low if low is None else low}",)}
     ends |= {"max": (f"{bounds.high if high is None else high}",), "step": bounds.step}
     field = {"model_value": (f"Number(Number({name}).toPrecision(10))",)}
@@ -104,7 +104,7 @@ def _profile():
 def _radius(k):
     """One radius of the profile: a slider and a field, the topmost first."""
     new = f"radii = radii.map((r, i) => i == {k} ? %s : r)"
-    low, _, step = choices.RANGES["radius"][:3]
+    low, _, step = choices.RADIUS[:3]
     label = f"radius at height {choices.HEIGHTS[k]:g}"
     ends = {"min": (f"{low}",), "max": ("1.6",), "step": step, "aria_label": label}
     field = {"inputmode": "decimal", "aria_label": f"{label}, value"}

@@ -5,10 +5,13 @@ Lines are drawn in the page's own colours: `currentColor`, and the classes u, v,
 
 import numpy as np
 
-from ..drawings.abcd import corners
+from .. import measure
+from ..parallelogram import ratios
+from ..surfaces import spline_profile
 from .choices import HEIGHTS
 
 BOX = 270, 150  # of the parallelogram and the histograms, in pixels
+NAMES = "\u03b8", "\u03b8\u2080"
 BINS = 27
 EXACT = 1e-9  # degrees: smaller deviations are rounding
 
@@ -19,15 +22,10 @@ def parallelogram(theta, theta0):
     Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
     medial lines, in those of u and v.
     """
-    shape = corners(theta, theta0)
-    low = shape.real.min() + 1j * shape.imag.min()
-    size = np.ptp(shape.real), np.ptp(shape.imag)
-    width, height = BOX[0] - 60, BOX[1] - 44
-    scale = min(width / size[0], height / size[1])
-    shape = (shape - low) * scale
-    shape += (BOX[0] - np.ptp(shape.real)) / 2 + 1j * (BOX[1] - np.ptp(shape.imag)) / 2
-    A, B, C, D = shape.real + 1j * (BOX[1] - shape.imag)
-    centre = (A + C) / 2
+    slanted, centre = ratios(theta, theta0)[0] * np.exp(1j * theta), complex(*BOX) / 2
+    shape = np.array([slanted, 0, 1, 1 + slanted]) - (1 + slanted) / 2
+    scale = min((BOX[0] - 60) / np.ptp(shape.real), (BOX[1] - 44) / np.ptp(shape.imag))
+    A, B, C, D = centre + scale * shape.conj()
     least = min(abs(C - B), abs(A - B))
     parts = [
         _line(A, C, "v", 1.5),
@@ -36,37 +34,33 @@ def parallelogram(theta, theta0):
         _line(A, D, "d1", 3),
         _line(B, A, "d2", 3),
         _line(C, D, "d2", 3),
-        _arc(B, C - B, A - B, min(26, 0.45 * least), "\u03b8"),
-        _arc(centre, D - centre, A - centre, min(22, 0.4 * abs(D - centre)), "\u03b8\u2080"),
+        _arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0]),
+        _arc(centre, D - centre, A - centre, min(22, 0.4 * abs(D - centre)), NAMES[1]),
     ]
     return _svg(BOX, parts, f"parallelogram with the angle {np.degrees(theta):.4g} degrees")
 
 
-def histograms(theta, theta0, asked):
+def histograms(off, asked):
     """How far both angles are off, face by face: two histograms with one scale.
 
-    theta, theta0: deviations in degrees, (f,); asked: the two angles in degrees.
+    off: the deviations of theta and of theta0 in degrees, each (f,); asked: the two angles.
     """
-    reach = _nice(max(np.abs(theta).max(), np.abs(theta0).max(), EXACT))
-    parts = []
-    for row, (off, name, angle) in enumerate(
-        ((theta, "\u03b8", asked[0]), (theta0, "\u03b8\u2080", asked[1]))
-    ):
+    reach = _nice(max(EXACT, *(np.abs(x).max() for x in off)))
+    left, middle, right = 10, BOX[0] / 2, BOX[0] - 10
+    parts, wide = [], (right - left) / BINS
+    for row, (values, name, angle) in enumerate(zip(off, NAMES, asked, strict=True)):
         base = 58 + 70 * row
-        count, _ = np.histogram(np.clip(off, -reach, reach), BINS, (-reach, reach))
-        wide = (BOX[0] - 20) / BINS
+        count, _ = np.histogram(np.clip(values, -reach, reach), BINS, (-reach, reach))
         for k in np.flatnonzero(count):
             high = max(1.5, 40 * count[k] / count.max())
             parts.append(
-                f'<rect class="bar{row}" x="{10 + k * wide:.1f}" y="{base - high:.1f}" '
+                f'<rect class="bar{row}" x="{left + k * wide:.1f}" y="{base - high:.1f}" '
                 f'width="{wide - 1:.1f}" height="{high:.1f}"/>'
             )
-        parts.append(_line(10 + 1j * base, BOX[0] - 10 + 1j * base, "axis", 1))
-        parts.append(_text(10, base - 46, f"{name} \u2212 {angle:.6g}\u00b0", "start"))
-    base = BOX[1] - 6
-    for x, value in ((10, -reach), (BOX[0] / 2, 0), (BOX[0] - 10, reach)):
-        anchor = "start" if x == 10 else "middle" if x < BOX[0] - 10 else "end"
-        parts.append(_text(x, base, f"{short(value, 1)}\u00b0", anchor))
+        parts.append(_line(complex(left, base), complex(right, base), "axis", 1))
+        parts.append(_text(left, base - 46, f"{name} \u2212 {angle:.6g}\u00b0", "start"))
+    for x, value, anchor in ((left, -reach, "start"), (middle, 0, "middle"), (right, reach, "end")):
+        parts.append(_text(x, BOX[1] - 6, f"{short(value, 1)}\u00b0", anchor))
     return _svg(BOX, parts, "histograms of the deviations of both angles")
 
 
@@ -78,27 +72,20 @@ def _nice(x):
 
 def profile(radii):
     """The meridian with its radii, the axis at the left."""
-    from ..surfaces import spline_profile
-
-    box = 110, 150
+    box, points = (110, 150), list(zip(radii, HEIGHTS, strict=True))
     scale = min((box[0] - 16) / max(1.3, 1.1 * max(radii)), (box[1] - 16) / HEIGHTS[-1])
-    parts = [_line(8 + 4j, 8 + 1j * (box[1] - 4), "axis", 1)]
-    points = list(zip(radii, HEIGHTS, strict=True))
+    corner = complex(8, box[1] - 8)
+    parts = [_line(8 + 4j, complex(8, box[1] - 4), "axis", 1)]
     try:
         curve = spline_profile(points)
         t = np.linspace(curve.start, curve.stop, 81)
-        xy = _place(curve.radius(t), curve.height(t), scale, box)
-        drawn = " ".join(f"{x:.1f},{y:.1f}" for x, y in xy)
-        parts.append(f'<polyline class="line" stroke-width="2" fill="none" points="{drawn}"/>')
+        parts.append(_curve(corner + scale * (curve.radius(t) - 1j * curve.height(t)), 2))
     except ValueError:
         pass  # the page says why there is no net
-    for x, y in _place(*np.array(points).T, scale, box):
-        parts.append(f'<circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="3.5"/>')
+    for radius, height in points:
+        at = corner + scale * complex(radius, -height)
+        parts.append(f'<circle class="dot" cx="{at.real:.1f}" cy="{at.imag:.1f}" r="3.5"/>')
     return _svg(box, parts, "profile")
-
-
-def _place(radius, height, scale, box):
-    return np.stack([8 + scale * radius, box[1] - 8 - scale * height], axis=1)
 
 
 def short(x, digits=2):
@@ -107,25 +94,26 @@ def short(x, digits=2):
     return text.replace("-", "\u2212")
 
 
-def numbers(n, shown):
-    """`session.Numbers` as the page shows them: a dict of texts; shown: the choice they are of."""
+def numbers(about, V, Q):
+    """A `Report` on the net V, Q as the page shows it, angles in degrees: a dict of texts."""
+    theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
+    lam, mu = ratios(theta, theta0)
+    _, _, one, two = measure.vectors(V, Q)
+    medial = np.linalg.norm([one, two], axis=2)
     return {
-        "quads": f"{n.quads:,}".replace(",", "\u2009"),
-        "lam": f"{n.lam:.5g}",
-        "mu": f"{n.mu:.5g}",
-        "mean_theta": f"{n.mean_theta:.6f}",
-        "mean_theta0": f"{n.mean_theta0:.6f}",
-        "theta_off": short(n.theta_off),
-        "theta0_off": short(n.theta0_off),
-        "flips": str(n.flips),
-        "size_low": short(n.size_low, 3),
-        "size_high": short(n.size_high, 3),
-        "theta": f"{shown.theta:.10g}",
-        "theta0": f"{shown.theta0:.10g}",
+        "quads": f"{about.quads:,}".replace(",", "\u2009"),
+        "lam": f"{lam:.5g}",
+        "mu": f"{mu:.5g}",
+        "mean_theta": f"{np.degrees(about.theta.mean):.6f}",
+        "mean_theta0": f"{np.degrees(about.theta0.mean):.6f}",
+        "theta_off": short(np.degrees(about.theta.max_deviation)),
+        "theta0_off": short(np.degrees(about.theta0.max_deviation)),
+        "flips": str(about.flips),
+        "size_low": short(medial.min(), 3),
+        "size_high": short(medial.max(), 3),
+        "theta": f"{np.degrees(theta):.10g}",
+        "theta0": f"{np.degrees(theta0):.10g}",
     }
-
-
-# --- pieces of SVG ------------------------------------------------------------------------
 
 
 def _svg(box, parts, words):
@@ -142,16 +130,18 @@ def _line(a, b, kind, width):
     )
 
 
+def _curve(points, width):
+    xy = " ".join(f"{p.real:.1f},{p.imag:.1f}" for p in points)
+    return f'<polyline class="line" stroke-width="{width}" fill="none" points="{xy}"/>'
+
+
 def _text(x, y, words, anchor="middle"):
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>'
 
 
 def _arc(apex, start, end, radius, label):
     """An arc around the apex from the direction start to the direction end, and its name."""
-    turn = np.angle(end / start)
-    t = start / abs(start) * np.exp(1j * np.linspace(0, turn, 24))
-    points = " ".join(f"{p.real:.1f},{p.imag:.1f}" for p in apex + radius * t)
+    t = start / abs(start) * np.exp(1j * np.linspace(0, np.angle(end / start), 24))
     at = apex + (radius + 11) * t[12]
     x, y = np.clip(at.real, 8, BOX[0] - 8), np.clip(at.imag, 8, BOX[1] - 6)
-    arc = f'<polyline class="line" stroke-width="1.2" fill="none" points="{points}"/>'
-    return arc + _text(x, y + 4, label)
+    return _curve(apex + radius * t, 1.2) + _text(x, y + 4, label)

@@ -74,7 +74,7 @@ class Scene:
 
         azimuth, elevation: degrees; aspect: width / height of the window.
         """
-        view.aim(self.plotter.camera, V, *np.radians([azimuth, elevation]), aspect)
+        view.aim(self.plotter.camera, V, tuple(np.radians([azimuth, elevation])), aspect)
         return self.plotter.camera
 
 
