@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import io, measure, mesh, paths, plot
+from .. import io, measure, mesh, paths
 from ..design import report
 from . import choices, look, nets
 
@@ -140,8 +140,8 @@ class Session:
             raise ValueError("there is no net to save")
         if suffix in (".svg", ".png"):
             fill = self.colours() if self.choice.shade else None
-            camera = plot.camera(azimuth, elevation)
-            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:])
+            sight = azimuth, elevation
+            return look.picture(self.V, self.Q, self.choice, fill, sight, suffix[1:])
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
             io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
