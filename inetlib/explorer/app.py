@@ -11,16 +11,15 @@ from trame.app.core import AVAILABLE_SERVERS
 from trame_vtk.modules import vtk as vtk_module
 
 from . import choices, look, page, plates, scene
-from .session import SAVED, Session
+from .session import Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
 NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
-EMPTY = "alert", "problem", "message", "progress", "code", "link"
+TEXTS = "alert", "problem", "message", "progress", "code", "link"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
 OFF = "dark", "searching", "can_search", "code_open", "help_open"
-START = dict.fromkeys((*EMPTY, *DRAWN), "") | dict.fromkeys(OFF, False) | {"numbers": {}}
 
 
 class App:
@@ -38,9 +37,10 @@ class App:
         self._task = self._search = None
         self._remake = False
         self.state.trame__title = "Isogonal nets"
-        self.state.update(START)
+        self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
+        self.state.numbers = {}
         self._dress()
-        self._echo()
+        self._echo([])
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
@@ -61,16 +61,18 @@ class App:
             scene.give_back(self.scene)
             self.scene = None
 
-    # --- what the page knows and does -----------------------------------------------------
+    # --- what the page does ---------------------------------------------------------------
 
     def _chosen(self):
         """The choice as the state holds it: lists, no tuples."""
         values = vars(self.session.choice).items()
         return {name: list(x) if isinstance(x, tuple) else x for name, x in values}
 
-    def _echo(self):
-        """Show the choice as it is, whatever was typed."""
+    def _echo(self, problems):
+        """Show the choice as it is, whatever was typed, and what was wrong."""
         self.state.update(self._chosen())
+        if problems:
+            self.state.alert = " \u00b7 ".join(problems[:4])
 
     def _dress(self):
         palette = look.DARK if self.state.dark else look.LIGHT
@@ -86,24 +88,18 @@ class App:
         self.state.dark, self.aspect = bool(dark), float(aspect)
         self._dress()
         self.session.choice, problems = choices.parse(str(query), self.session.choice)
-        self._tell(problems)
-        self._echo()
+        self._echo(problems)
         self._soon(True)
 
     def _changed(self, **_):
         before = self.session.choice
         values = {k: self.state[k] for k, x in self._chosen().items() if self.state[k] != x}
         if values:
-            self._tell(self.session.change(**values))
-            self._echo()
+            self._echo(self.session.change(**values))
         if self.session.choice != before:
             if NEW_PLACE & set(values):
                 self.sight = self.fitted = None
             self._soon(not set(values) <= set(choices.SHOWN))
-
-    def _tell(self, problems):
-        if problems:
-            self.state.alert = " \u00b7 ".join(problems[:4])
 
     def run(self):
         """Begin the search again."""
@@ -122,7 +118,7 @@ class App:
         try:
             x, y, z = (a - b for a, b in zip(camera["position"], camera["focalPoint"], strict=True))
             sight = (atan2(y, x), atan2(z, hypot(x, y))) if hypot(x, y) > 1e-6 * abs(z) else ()
-            data = self.session.save(suffix if suffix in SAVED else "", *sight)
+            data = self.session.save(suffix, *sight)
         except (ValueError, ImportError, KeyError, TypeError) as error:
             self.state.alert = f"not saved: {error}"
             return None
@@ -149,10 +145,7 @@ class App:
         """Show the net when the changes that are waiting have come; remake: make it first."""
         self._remake = self._remake or remake
         if self._task is None or self._task.done():
-            self._task = self._begin(self._refresh())
-
-    def _begin(self, work):
-        return asyncio.get_running_loop().create_task(self._safely(work))
+            self._task = asyncio.create_task(self._safely(self._refresh()))
 
     async def _safely(self, work):
         """What nobody waits for must not fail in silence."""
@@ -176,7 +169,7 @@ class App:
                 self._search.cancel()
             self.state.searching = search
         if search:
-            self._search = self._begin(self._find())
+            self._search = asyncio.create_task(self._safely(self._find()))
             self.state.progress = "preparing \u2026"
         elif remake:
             self.session.construct()
@@ -220,15 +213,13 @@ class App:
         elif scene.is_lost(session.V, self.fitted):
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)
-        state.histogram_svg = plates.histograms(
-            session.deviations(), (session.shown.theta, session.shown.theta0)
-        )
+        asked = session.shown.theta, session.shown.theta0
+        state.histogram_svg = plates.histograms(session.deviations(), asked)
 
     def _plates(self):
         choice, state = self.session.choice, self.state
-        state.parallelogram_svg = plates.parallelogram(
-            radians(choice.theta), radians(choice.theta0)
-        )
+        angles = radians(choice.theta), radians(choice.theta0)
+        state.parallelogram_svg = plates.parallelogram(*angles)
         state.profile_svg = plates.profile(choice.radii)
         state.code, state.link = self.session.code(), choices.link(choice)
         if self.server.protocol and not self.session.given:

@@ -46,7 +46,7 @@ class Door:
         pages = App("pages")
         pages.server.enable_module(vue3)
         self._www = Path(pages.server._www)
-        folders = {name: _folder(folder) for name, folder in pages.server.serve.items()}
+        folders = {k: x if isinstance(x, str) else x[0] for k, x in pages.server.serve.items()}
         pages.close()
         routes = [
             web.get("/", self._index),
@@ -141,10 +141,6 @@ async def _talk(server, socket):
         await connection.close()
         await server.stop()
         await task
-
-
-def _folder(value):
-    return value[0] if isinstance(value, (list, tuple)) else value
 
 
 async def _up(request):
