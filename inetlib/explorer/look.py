@@ -3,7 +3,7 @@
 import io
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
@@ -119,17 +119,11 @@ def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> 
 
 
 def picture(
-    V: np.ndarray,
-    Q: np.ndarray,
-    choice: Choice,
-    shade: np.ndarray | None,
-    sight: tuple,
-    form: str,
+    V: np.ndarray, Q: np.ndarray, choice: Choice, shade: Any, camera: Any, form: str
 ) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
-    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; sight: azimuth and
-    elevation of the viewer, radians.
+    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
     """
     plan = layout(Q, len(V), choice.families, choice.parallelograms)
     W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
@@ -144,6 +138,6 @@ def picture(
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes([0.02, 0.02, 0.96, 0.96], aspect="equal")
         ax.set_axis_off()
-        plot.scene(ax, plot.camera(*sight), W, faces, fill, lines)
+        plot.scene(ax, camera, W, faces, fill, lines)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()

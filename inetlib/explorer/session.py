@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import io, measure, mesh, paths
+from .. import io, measure, mesh, paths, plot
 from ..design import report
 from . import choices, look, nets
 
@@ -44,8 +44,10 @@ class Session:
             V, Q = mesh.check_arrays(*net)
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0)
-            made = nets.Made(V, Q, "a net from Python; deviations are from its mean angles")
-            self._settle(self.choice, made, _report(self.choice, made))
+            words = "a net from Python; deviations are from its mean angles"
+            self._settle(None, None, lambda _: nets.Made(V, Q, words))
+            if self.problem:
+                raise ValueError(self.problem)
 
     def change(self, **values):
         """Take new values; the sentences on those that are refused."""
@@ -62,13 +64,28 @@ class Session:
         self.stop()
         self.run = None
         if not self.given:
-            self._settle(self.choice, *_tried(self.choice, nets.make))
+            self._settle(None, None, nets.make)
 
-    def _settle(self, choice, made, about, problem=""):
-        self.problem = problem
-        if made is not None:
-            self.V, self.Q, self.message = made
-            self.shown, self.report = choice, about
+    def _settle(self, run, then, make, *known):
+        """Show the net that is made, or say why there is none, unless a newer run has begun.
+
+        then: the run that is under way afterwards.  Collapsed faces are no net.
+        """
+        choice, made, problem = run.choice if run else self.choice, None, ""
+        try:
+            made = make(choice, *known)
+            angles = np.radians([choice.theta, choice.theta0])
+            about = report.report(made.V, made.Q, theta=angles[0], theta0=angles[1])
+        except (ValueError, ArithmeticError, MemoryError) as error:
+            made, problem = None, f"no net: {error or type(error).__name__}"
+        with self._lock:
+            if run is not self.run:
+                return False
+            self.run, self.problem = then, problem
+            if made is not None:
+                self.V, self.Q, self.message = made
+                self.shown, self.report = choice, about
+            return True
 
     def begin(self):
         """The `Run` of a new search, for `search`; an older one is asked to stop."""
@@ -95,32 +112,22 @@ class Session:
                 seen(V, Q, self.steps)
             return not run.stopped
 
-        found = _tried(run.choice, nets.make, self.surface, after)
-        with self._lock:
-            if run is self.run:
-                self._settle(run.choice, *found)
-                self.run = None
+        self._settle(run, None, nets.make, self.surface, after)
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        made = nets.Made(V, Q, f"step {self.steps}")
-        found = _tried(run.choice, lambda _: made)
-        with self._lock:
-            if run is self.run:
-                self._settle(run.choice, *found)
-            return run is self.run
+        words = f"step {self.steps}"
+        return self._settle(run, run, lambda _: nets.Made(V, Q, words))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
-        return np.degrees(measure.angles(self.V, self.Q)) - [
-            [self.shown.theta],
-            [self.shown.theta0],
-        ]
+        asked = np.array([[self.shown.theta], [self.shown.theta0]])
+        return np.degrees(measure.angles(self.V, self.Q)) - asked
 
     def colours(self):
         """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
-        off = measure.deviations(self.V, self.Q, **_wanted(self.shown))
-        return look.shades(np.degrees(off).max(axis=0))
+        asked = np.radians([self.shown.theta, self.shown.theta0])
+        return look.shades(np.degrees(measure.deviations(self.V, self.Q, *asked)).max(axis=0))
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
@@ -140,29 +147,12 @@ class Session:
             raise ValueError("there is no net to save")
         if suffix in (".svg", ".png"):
             fill = self.colours() if self.choice.shade else None
-            sight = azimuth, elevation
-            return look.picture(self.V, self.Q, self.choice, fill, sight, suffix[1:])
+            camera = plot.camera(azimuth, elevation)
+            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:])
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
             io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
             return path.read_bytes()
-
-
-def _wanted(choice):
-    return {"theta": np.radians(choice.theta), "theta0": np.radians(choice.theta0)}
-
-
-def _report(choice, made):
-    return report.report(made.V, made.Q, **_wanted(choice))
-
-
-def _tried(choice, make, *known):
-    """(a net, its `Report`, "") or (None, None, why there is none); collapsed faces are no net."""
-    try:
-        made = make(choice, *known)
-        return made, _report(choice, made), ""
-    except (ValueError, ArithmeticError, MemoryError) as error:
-        return None, None, f"no net: {error or type(error).__name__}"
 
 
 def missing(suffix: str) -> str:
