@@ -23,10 +23,7 @@ OFF = "dark", "searching", "can_search", "code_open", "help_open"
 
 
 class App:
-    """The explorer in one tab: a trame server of its own, without a port.
-
-    surface, path, net: as of `Session`.
-    """
+    """The explorer in one tab, a trame server without a port; arguments as of `Session`."""
 
     def __init__(self, name, surface=None, path=None, net=None):
         self.session = Session(surface, path, net)
@@ -40,7 +37,7 @@ class App:
         self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
         self.state.numbers = {}
         self._dress()
-        self._echo([])
+        self._echo()
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
@@ -63,25 +60,20 @@ class App:
 
     # --- what the page does ---------------------------------------------------------------
 
-    def _chosen(self):
-        """The choice as the state holds it: lists, no tuples."""
-        values = vars(self.session.choice).items()
-        return {name: list(x) if isinstance(x, tuple) else x for name, x in values}
-
-    def _echo(self, problems):
+    def _echo(self, problems=()):
         """Show the choice as it is, whatever was typed, and what was wrong."""
-        self.state.update(self._chosen())
+        self.state.update(_listed(self.session.choice))
         if problems:
             self.state.alert = " \u00b7 ".join(problems[:4])
+
+    def _dressed(self, **_):
+        self._dress()
+        self._soon(False)
 
     def _dress(self):
         palette = look.DARK if self.state.dark else look.LIGHT
         self.state.colours = palette.families
         self.state.palette = "; ".join(f"--ex-{k}: {v}" for k, v in palette.families.items())
-
-    def _dressed(self, **_):
-        self._dress()
-        self._soon(False)
 
     def arrive(self, query, dark, aspect):
         """A browser has opened the page: take the link's values, and show the net."""
@@ -93,7 +85,7 @@ class App:
 
     def _changed(self, **_):
         before = self.session.choice
-        values = {k: self.state[k] for k, x in self._chosen().items() if self.state[k] != x}
+        values = {k: self.state[k] for k, x in _listed(before).items() if self.state[k] != x}
         if values:
             self._echo(self.session.change(**values))
         if self.session.choice != before:
@@ -127,10 +119,7 @@ class App:
     # --- the camera -----------------------------------------------------------------------
 
     def look(self, name, aspect=None):
-        """See the whole net: "from_above", "from_side", or "fit": from where it is by default.
-
-        "refit" when the first scene is there: from where it was to be seen.
-        """
+        """See the whole net: "from_above", "from_side", "fit": by default, "refit": as before."""
         self.aspect = float(aspect or self.aspect)
         V, sight = self.session.V, SIGHTS.get(name, self.sight)
         if name == "fit":
@@ -224,3 +213,8 @@ class App:
         state.code, state.link = self.session.code(), choices.link(choice)
         if self.server.protocol and not self.session.given:
             self.server.js_call("address", "exec", state.link)
+
+
+def _listed(choice):
+    """A choice as the state holds it: lists, no tuples."""
+    return {name: list(x) if isinstance(x, tuple) else x for name, x in vars(choice).items()}

@@ -31,10 +31,7 @@ DARK = Palette("#11161d", "#434f5d", "#6d88a8", BRIGHT)
 
 
 def shades(off: np.ndarray) -> np.ndarray:
-    """The colours of deviations (degrees) on a logarithmic scale: bytes (k, 3).
-
-    Below 10^DECADES[0] degrees the faces are nearly white.
-    """
+    """The colours of deviations (degrees) on a logarithmic scale from near white: bytes (k, 3)."""
     low, high = DECADES
     part = (np.log10(np.maximum(off, 1e-300)) - low) / (high - low)
     rgb = matplotlib.colormaps["Purples"](np.clip(0.2 + 0.8 * part, 0.2, 1))[:, :3]
@@ -136,7 +133,7 @@ def picture(
         plot.use_style()
         matplotlib.rcParams["svg.hashsalt"] = "inetlib"
         figure = Figure(figsize=(8, 6), layout="none")
-        ax = figure.add_axes([0.02, 0.02, 0.96, 0.96], aspect="equal")
+        ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
         plot.scene(ax, camera, W, faces, fill, lines)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")

@@ -2,6 +2,7 @@
 
 from contextlib import contextmanager
 from importlib.resources import files
+from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, html
@@ -44,11 +45,8 @@ SHOWN = {  # what can be shown of a net
 }
 
 
-def build(server, plotter, given=False):
-    """The page of a server: its layout is stored there; returns the view of the plotter.
-
-    given: the net came from Python, so that nothing is chosen but what is shown.
-    """
+def build(server: Any, plotter: Any, given: bool = False) -> Any:
+    """The page of a server, or that of a net that is given; returns the view of the plotter."""
     theme = ("dark ? 'dark' : 'light'",)
     with VAppLayout(server, theme=theme, style=("palette",)):
         client.Style((FOLDER / "page.css").read_text(encoding="utf-8"))

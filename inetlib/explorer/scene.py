@@ -88,7 +88,7 @@ def _counted(cells):
     return np.insert(cells, 0, cells.shape[1], axis=1).ravel()
 
 
-_free = []  # scenes of tabs that were closed
+_free: list[Scene] = []  # scenes of tabs that were closed
 
 
 def borrow() -> Scene:

@@ -8,8 +8,10 @@ import asyncio
 import os
 import secrets
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 from aiohttp import WSMsgType, web
@@ -149,11 +151,12 @@ async def _up(request):
     raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
 
 
-def serve(surface=None, path=None, port=None, ready=print):
+def serve(
+    surface: Any = None, path: Any = None, port: int | None = None, ready: Callable = print
+) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
-    surface, path: `io.Surface` of a file and its name, or None; port: None for the usual one or
-    the next that is free, 0 for any.  OSError when the port is taken.
+    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`.
     """
 
     async def run():

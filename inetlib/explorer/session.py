@@ -24,12 +24,9 @@ class Run:
 class Session:
     """A `choices.Choice` and the net that belongs to it.
 
-    surface: `io.Surface` of the file on the command line, path its name, or None; net: V, Q of
-    a net that is given and not made here.
-
-    V, Q, report    the net that is shown and its numbers; `shown` is the choice it belongs to
-    message         a sentence on it; problem: why there is no net of the choice, or ""
-    run             the search under way, or None; steps: how many it has made
+    surface, path: `io.Surface` of the file on the command line and its name; net: V, Q of a net
+    that is given and not made here.  V, Q, report, message: the net that is shown, of the choice
+    `shown`; problem: why there is no net of the choice, or ""; run: the search under way.
     """
 
     def __init__(self, surface=None, path=None, net=None):
@@ -71,7 +68,7 @@ class Session:
 
         then: the run that is under way afterwards.  Collapsed faces are no net.
         """
-        choice, made, problem = run.choice if run else self.choice, None, ""
+        choice, problem = run.choice if run else self.choice, ""
         try:
             made = make(choice, *known)
             angles = np.radians([choice.theta, choice.theta0])
@@ -99,10 +96,7 @@ class Session:
             self.run.stopped = True
 
     def search(self, run, seen=None):
-        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and every step.
-
-        What a run finds after a newer one has begun is forgotten.
-        """
+        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and each step."""
 
         def after(step, V, Q):
             if run is not self.run or run.stopped:
