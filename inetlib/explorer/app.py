@@ -11,23 +11,19 @@ from trame.app.core import AVAILABLE_SERVERS
 from trame_vtk.modules import vtk as vtk_module
 
 from . import choices, look, page, plates, scene
-from .session import SAVED, Session
+from .session import Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
 NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
-EMPTY = "alert", "problem", "message", "progress", "code", "link"
+TEXTS = "alert", "problem", "message", "progress", "code", "link"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
 OFF = "dark", "searching", "can_search", "code_open", "help_open"
-START = dict.fromkeys((*EMPTY, *DRAWN), "") | dict.fromkeys(OFF, False) | {"numbers": {}}
 
 
 class App:
-    """The explorer in one tab: a trame server of its own, without a port.
-
-    surface, path, net: as of `Session`.
-    """
+    """The explorer in one tab, a trame server without a port; arguments as of `Session`."""
 
     def __init__(self, name, surface=None, path=None, net=None):
         self.session = Session(surface, path, net)
@@ -38,7 +34,8 @@ class App:
         self._task = self._search = None
         self._remake = False
         self.state.trame__title = "Isogonal nets"
-        self.state.update(START)
+        self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
+        self.state.numbers = {}
         self._dress()
         self._echo()
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
@@ -61,49 +58,40 @@ class App:
             scene.give_back(self.scene)
             self.scene = None
 
-    # --- what the page knows and does -----------------------------------------------------
+    # --- what the page does ---------------------------------------------------------------
 
-    def _chosen(self):
-        """The choice as the state holds it: lists, no tuples."""
-        values = vars(self.session.choice).items()
-        return {name: list(x) if isinstance(x, tuple) else x for name, x in values}
+    def _echo(self, problems=()):
+        """Show the choice as it is, whatever was typed, and what was wrong."""
+        self.state.update(_listed(self.session.choice))
+        if problems:
+            self.state.alert = " \u00b7 ".join(problems[:4])
 
-    def _echo(self):
-        """Show the choice as it is, whatever was typed."""
-        self.state.update(self._chosen())
+    def _dressed(self, **_):
+        self._dress()
+        self._soon(False)
 
     def _dress(self):
         palette = look.DARK if self.state.dark else look.LIGHT
         self.state.colours = palette.families
         self.state.palette = "; ".join(f"--ex-{k}: {v}" for k, v in palette.families.items())
 
-    def _dressed(self, **_):
-        self._dress()
-        self._soon(False)
-
     def arrive(self, query, dark, aspect):
         """A browser has opened the page: take the link's values, and show the net."""
         self.state.dark, self.aspect = bool(dark), float(aspect)
         self._dress()
         self.session.choice, problems = choices.parse(str(query), self.session.choice)
-        self._tell(problems)
-        self._echo()
+        self._echo(problems)
         self._soon(True)
 
     def _changed(self, **_):
         before = self.session.choice
-        values = {k: self.state[k] for k, x in self._chosen().items() if self.state[k] != x}
+        values = {k: self.state[k] for k, x in _listed(before).items() if self.state[k] != x}
         if values:
-            self._tell(self.session.change(**values))
-            self._echo()
+            self._echo(self.session.change(**values))
         if self.session.choice != before:
             if NEW_PLACE & set(values):
                 self.sight = self.fitted = None
             self._soon(not set(values) <= set(choices.SHOWN))
-
-    def _tell(self, problems):
-        if problems:
-            self.state.alert = " \u00b7 ".join(problems[:4])
 
     def run(self):
         """Begin the search again."""
@@ -122,7 +110,7 @@ class App:
         try:
             x, y, z = (a - b for a, b in zip(camera["position"], camera["focalPoint"], strict=True))
             sight = (atan2(y, x), atan2(z, hypot(x, y))) if hypot(x, y) > 1e-6 * abs(z) else ()
-            data = self.session.save(suffix if suffix in SAVED else "", *sight)
+            data = self.session.save(suffix, *sight)
         except (ValueError, ImportError, KeyError, TypeError) as error:
             self.state.alert = f"not saved: {error}"
             return None
@@ -131,10 +119,7 @@ class App:
     # --- the camera -----------------------------------------------------------------------
 
     def look(self, name, aspect=None):
-        """See the whole net: "from_above", "from_side", or "fit": from where it is by default.
-
-        "refit" when the first scene is there: from where it was to be seen.
-        """
+        """See the whole net: "from_above", "from_side", "fit": by default, "refit": as before."""
         self.aspect = float(aspect or self.aspect)
         V, sight = self.session.V, SIGHTS.get(name, self.sight)
         if name == "fit":
@@ -149,10 +134,7 @@ class App:
         """Show the net when the changes that are waiting have come; remake: make it first."""
         self._remake = self._remake or remake
         if self._task is None or self._task.done():
-            self._task = self._begin(self._refresh())
-
-    def _begin(self, work):
-        return asyncio.get_running_loop().create_task(self._safely(work))
+            self._task = asyncio.create_task(self._safely(self._refresh()))
 
     async def _safely(self, work):
         """What nobody waits for must not fail in silence."""
@@ -176,7 +158,7 @@ class App:
                 self._search.cancel()
             self.state.searching = search
         if search:
-            self._search = self._begin(self._find())
+            self._search = asyncio.create_task(self._safely(self._find()))
             self.state.progress = "preparing \u2026"
         elif remake:
             self.session.construct()
@@ -220,16 +202,19 @@ class App:
         elif scene.is_lost(session.V, self.fitted):
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)
-        state.histogram_svg = plates.histograms(
-            session.deviations(), (session.shown.theta, session.shown.theta0)
-        )
+        asked = session.shown.theta, session.shown.theta0
+        state.histogram_svg = plates.histograms(session.deviations(), asked)
 
     def _plates(self):
         choice, state = self.session.choice, self.state
-        state.parallelogram_svg = plates.parallelogram(
-            radians(choice.theta), radians(choice.theta0)
-        )
+        angles = radians(choice.theta), radians(choice.theta0)
+        state.parallelogram_svg = plates.parallelogram(*angles)
         state.profile_svg = plates.profile(choice.radii)
         state.code, state.link = self.session.code(), choices.link(choice)
         if self.server.protocol and not self.session.given:
             self.server.js_call("address", "exec", state.link)
+
+
+def _listed(choice):
+    """A choice as the state holds it: lists, no tuples."""
+    return {name: list(x) if isinstance(x, tuple) else x for name, x in vars(choice).items()}

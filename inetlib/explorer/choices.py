@@ -82,7 +82,7 @@ WORDS = {"px": "pole x", "py": "pole y", "pz": "pole z", "radii": "a radius of t
 
 
 def _of(allowed, default):
-    """A field with what is allowed: a `Range`, names, or a switch; of sequences, for each part."""
+    """A field, and what is allowed for it, or for each part: a `Range`, names, or a switch."""
     return field(default=default, metadata={"allowed": allowed})
 
 
@@ -127,11 +127,11 @@ SHOWN = "families", "parallelograms", "shade"
 def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
     """(the choice with these values, sentences on those that are refused).
 
-    Values may be texts, as in a link.  Refused values leave the choice as it was.  With the
-    lock on, one angle takes the other along; turning it on makes theta0 equal to theta.  A
-    bending that a newly chosen surface does not have is lowered to its largest.
+    Values may be texts, as in a link.  With the lock on, one angle takes the other along; turning
+    it on makes theta0 equal to theta.  A new surface lowers the bending to the largest it has.
     """
-    good, problems = {}, []
+    good: dict = {}
+    problems = []
     for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending
         try:
             good[name] = _checked(name, values[name], good.get("surface", choice.surface))
@@ -141,8 +141,8 @@ def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
         angle = good.get("theta", good.get("theta0", choice.theta))
         good |= {"theta": angle, "theta0": angle}
     found = replace(choice, **good)
-    most = _allowed("bend", found.surface).high
-    return replace(found, bend=min(found.bend, float(most))), problems
+    most = float(_allowed("bend", found.surface).high)
+    return replace(found, bend=min(found.bend, most)), problems
 
 
 def _allowed(name, surface):

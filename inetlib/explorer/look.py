@@ -1,8 +1,9 @@
 """What a net looks like in the explorer: its cells, curves, colours, and pictures of it."""
 
 import io
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib
 import numpy as np
@@ -10,12 +11,13 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from .. import plot
+from .choices import Choice
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
 
 
 class Palette(NamedTuple):
-    """Colours: the background, the faces, the parallelograms, and the four families."""
+    """Colours; black: of the inscribed parallelograms."""
 
     background: str
     face: str
@@ -24,19 +26,12 @@ class Palette(NamedTuple):
 
 
 LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", plot.COLOURS)
-DARK = Palette(
-    "#11161d",
-    "#434f5d",
-    "#6d88a8",
-    {"u": "#7db0ff", "v": "#ff8f5e", "d1": "#45d6ab", "d2": "#ffd04a"},
-)
+BRIGHT = {"u": "#7db0ff", "v": "#ff8f5e", "d1": "#45d6ab", "d2": "#ffd04a"}
+DARK = Palette("#11161d", "#434f5d", "#6d88a8", BRIGHT)
 
 
-def shades(off):
-    """The colours of deviations (degrees) on a logarithmic scale: bytes (k, 3).
-
-    Below 10^DECADES[0] degrees the faces are nearly white.
-    """
+def shades(off: np.ndarray) -> np.ndarray:
+    """The colours of deviations (degrees) on a logarithmic scale from near white: bytes (k, 3)."""
     low, high = DECADES
     part = (np.log10(np.maximum(off, 1e-300)) - low) / (high - low)
     rgb = matplotlib.colormaps["Purples"](np.clip(0.2 + 0.8 * part, 0.2, 1))[:, :3]
@@ -44,7 +39,7 @@ def shades(off):
     return np.round(255 * rgb).astype(np.uint8)
 
 
-def scale():
+def scale() -> list[tuple[str, str]]:
     """The colours and names of the scale of `shades`: [(colour, words), ...]."""
     powers = np.arange(DECADES[0] - 1, DECADES[1] + 1)
     words = [f"{10.0**p:g}\u00b0" for p in powers]
@@ -53,7 +48,7 @@ def scale():
     return [(f"rgb({r},{g},{b})", w) for (r, g, b), w in zip(colours.tolist(), words, strict=True)]
 
 
-def line_width(quads):
+def line_width(quads: int) -> int:
     """The width of the curves in pixels: thinner where there are more quads."""
     return 3 if quads < 200 else 2 if quads < 3000 else 1
 
@@ -71,48 +66,46 @@ class Layout(NamedTuple):
     lines: dict
 
 
-def layout(Q, count, families, parallelograms=False):
+def layout(
+    Q: np.ndarray, count: int, families: Sequence[str], parallelograms: bool = False
+) -> Layout:
     """The `Layout` of quads Q on `count` vertices.
 
     With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
     Diagonals run through the mean of the four corners, on the surface that is filled: where
     they are shown, the quads become triangles around it.
     """
-    sides = np.stack([Q, np.roll(Q, -1, axis=1)], axis=2)
-    edges, around = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    after, before = np.roll(Q, -1, axis=1), np.roll(Q, 1, axis=1)
+    sides = np.sort(np.stack([Q, after], axis=2).reshape(-1, 2), axis=1)
+    edges, around = np.unique(sides, axis=0, return_inverse=True)
     around = around.reshape(-1, 4)
-    along_u = np.zeros(len(edges), dtype=bool)
-    along_u[around[:, [1, 3]]] = True  # v2 v3 and v4 v1
+    along_u = np.isin(np.arange(len(edges)), around[:, [1, 3]])  # v2 v3 and v4 v1
     lines = {"u": edges[along_u], "v": edges[~along_u]}
-    inner = {"d1", "d2"} & set(families)
     quads, triangles, means = Q, np.empty((0, 3), dtype=np.int64), []
     if parallelograms:
         quads, means = around + count, [edges]
         triangles = np.stack([Q, quads, np.roll(quads, 1, axis=1)], axis=2).reshape(-1, 3)
         count += len(edges)
-    if inner:
-        centre = count + np.arange(len(Q))[:, None]
-        spokes = [np.broadcast_to(centre, Q.shape), Q]
-        means = [*means, Q]
+    if {"d1", "d2"} & set(families):
+        centre = np.broadcast_to(count + np.arange(len(Q))[:, None], Q.shape)
+        spokes, means = [centre, Q], [*means, Q]
         if parallelograms:  # over the side of the parallelogram, down to the corner
-            between = count + len(Q) + np.arange(Q.size).reshape(-1, 4)
-            near = [Q, Q, np.roll(Q, 1, axis=1), np.roll(Q, -1, axis=1)]
-            means, spokes = [*means, np.stack(near, axis=2).reshape(-1, 4)], [spokes[0], between, Q]
+            spokes.insert(1, count + len(Q) + np.arange(Q.size).reshape(-1, 4))
+            means.append(np.stack([Q, Q, before, after], axis=2).reshape(-1, 4))
         else:
-            fan = [np.roll(Q, -1, axis=1), spokes[0]]
-            quads, triangles = Q[:0], np.stack([Q, *fan], axis=2).reshape(-1, 3)
+            quads, triangles = Q[:0], np.stack([Q, after, centre], axis=2).reshape(-1, 3)
         pieces = [np.stack(p, axis=2) for p in pairwise(spokes)]
         for name, corners in (("d1", [0, 2]), ("d2", [1, 3])):
             lines[name] = np.concatenate([p[:, corners].reshape(-1, 2) for p in pieces])
     return Layout(means, quads, triangles, {name: lines[name] for name in families})
 
 
-def points(V, layout):
+def points(V: np.ndarray, layout: Layout) -> np.ndarray:
     """The vertices of a layout: V and the means."""
     return np.concatenate([V, *(V[k].mean(axis=1) for k in layout.means)])
 
 
-def fills(layout, palette, shade=None):
+def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> np.ndarray:
     """RGB bytes of all cells, first the quads: (f + t, 3); shade: one colour a face, or None."""
     quads, triangles = len(layout.quads), len(layout.triangles)
     if shade is not None:
@@ -122,28 +115,26 @@ def fills(layout, palette, shade=None):
     return np.repeat(pair, [quads, triangles], axis=0)
 
 
-def picture(V, Q, choice, shade, camera, form):
+def picture(
+    V: np.ndarray, Q: np.ndarray, choice: Choice, shade: Any, camera: Any, form: str
+) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
     choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
     """
+    plan = layout(Q, len(V), choice.families, choice.parallelograms)
+    W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
+    fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")
+    width, lines = 0.6 * line_width(len(Q)), []
+    for name, pairs in plan.lines.items():
+        lines += [(W[pair], plot.COLOURS[name], width) for pair in pairs]
+    file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
     with matplotlib.rc_context():
         plot.use_style()
         matplotlib.rcParams["svg.hashsalt"] = "inetlib"
         figure = Figure(figsize=(8, 6), layout="none")
-        ax = figure.add_axes([0.02, 0.02, 0.96, 0.96])
-        ax.set_aspect("equal")
+        ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
-        plan = layout(Q, len(V), choice.families, choice.parallelograms)
-        W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
-        fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")
-        lines = [
-            (W[pair], plot.COLOURS[name], 0.6 * line_width(len(Q)))
-            for name, pairs in plan.lines.items()
-            for pair in pairs
-        ]
         plot.scene(ax, camera, W, faces, fill, lines)
-        file = io.BytesIO()
-        metadata = {"Date": None} if form == "svg" else {"Software": None}
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()

@@ -121,8 +121,8 @@ def make(
 ) -> Made:
     """The net of a choice; ValueError where there is none.
 
-    surface: `io.Surface`, that of the file; callback(step, V, Q) sees the start of an
-    optimisation, with the step None, and every step, and may return False to end it.
+    surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
+    (step None) and every step, and may return False to end it.
     """
     recipe, values = _recipe(choice), _values(choice)
     names = {k: np.radians(x) if k in IN_DEGREES else x for k, x in values.items()}
@@ -170,10 +170,7 @@ def _values(choice, path=None):
 
 
 def _grid(choice, centre, radius):
-    """The origin and the edge of the sheared grid that fills a disk, rounded for short code.
-
-    And the curvature that bends it by the chosen angle from one side to the other.
-    """
+    """A grid that fills a disk, and the curvature that bends it as chosen, in short numbers."""
     angles = radians(choice.theta), radians(choice.theta0)
     lam, mu = parallelogram.ratios(*angles)
     along, across = choice.m, choice.n * parallelogram.rho(lam, mu)

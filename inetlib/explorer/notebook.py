@@ -24,11 +24,7 @@ _door = None
 
 
 class Live:
-    """A page in a notebook's output, and the picture that is left of it elsewhere.
-
-    Where the page cannot be had, because the kernel has ended or the notebook is only read,
-    the browser shows the picture.
-    """
+    """A page in a notebook's output, or its picture: the kernel may have ended."""
 
     def __init__(self, address, picture, height):
         self.address, self.picture, self.height = address, picture, height
@@ -44,9 +40,8 @@ class Live:
 def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     """The explorer in a notebook: `explorer.show(kind="revolution", theta=75, theta0=60)`.
 
-    values: those of `choices.Choice`, angles in degrees; ValueError for what is no such value.
-    live: True, False, or by default True where a person runs the notebook.  Returns a `Live`
-    page, or a still IPython Image.
+    values: those of `choices.Choice`, angles in degrees, else ValueError.  live: a `Live` page,
+    or a still IPython Image; by default live where a person runs the notebook.
     """
     session = Session()
     _change(session, **values)
@@ -74,10 +69,9 @@ def turn(
 ) -> Any:
     """The `view.scene` of a net for a reader, to be turned by hand, or as a still IPython Image.
 
-    live: True, False, or by default True when there is a person before it: in JupyterLab, where
-    the net becomes a `Live` page that the browser draws (in its own colours and widths, with the
-    families that have curves), or a script with a display, where it opens a window.  A notebook
-    that a tool runs keeps a still picture.  ValueError for arrays that are no net.
+    live: by default where there is a person: in JupyterLab as a `Live` page that the browser draws
+    (in its own colours and widths, with the families that have curves), in a script with a
+    display as a window.  ValueError for arrays that are no net.
     """
     notebook = "ipykernel" in sys.modules
     if live is None:

@@ -2,13 +2,15 @@
 
 from contextlib import contextmanager
 from importlib.resources import files
+from typing import Any
 
 from trame.ui.vuetify3 import VAppLayout
 from trame.widgets import client, html
 from trame.widgets import vuetify3 as v3
 from trame.widgets.vtk import VtkLocalView
 
-from . import panels
+from ..io import WITH_CURVES
+from . import choices, look
 from .session import SAVED, missing
 
 FOLDER = files("inetlib.explorer")
@@ -24,27 +26,163 @@ HELP = {
     "Numbers": "Type any value that a slider has no step for, and press Enter. Deviations are "
     "the largest over all faces, from the angles asked for.",
 }
+TOOLS = (
+    ("mdi-fit-to-page-outline", "Fit the net (F)", "fit"),
+    ("mdi-arrow-down-circle-outline", "From above", "from_above"),
+    ("mdi-arrow-right-circle-outline", "From the side", "from_side"),
+)
+SMALL = {"hide_details": True, "density": "compact"}
+FIELD = SMALL | {"variant": "outlined"}
+SWITCH = SMALL | {"color": "primary"}
+SLIDER = SWITCH | {"thumb_size": 15, "track_size": 3}
+SHOWN = {  # what can be shown of a net
+    "u": "u-curves",
+    "v": "v-curves",
+    "d1": "diagonals d\u2081",
+    "d2": "diagonals d\u2082",
+    "parallelograms": "inscribed parallelograms",
+    "shade": "shade faces by their deviation",
+}
 
 
-def build(server, plotter, given=False):
-    """The page of a server: its layout is stored there; returns the view of the plotter.
-
-    given: the net came from Python, so that nothing is chosen but what is shown.
-    """
+def build(server: Any, plotter: Any, given: bool = False) -> Any:
+    """The page of a server, or that of a net that is given; returns the view of the plotter."""
     theme = ("dark ? 'dark' : 'light'",)
     with VAppLayout(server, theme=theme, style=("palette",)):
         client.Style((FOLDER / "page.css").read_text(encoding="utf-8"))
         _bar(given)
         with v3.VMain(style="height: 100vh; height: 100dvh"), html.Div(classes="ex"):
             with html.Div(classes="ex-side ex-left"):
-                panels.controls(given)
+                _controls(given)
             view = _view(plotter)
             with html.Div(classes="ex-side ex-right"):
-                panels.numbers()
+                _numbers()
         _dialogs()
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
         client.Script((FOLDER / "client.js").read_text(encoding="utf-8"))
     return view
+
+
+def _controls(given):
+    """What is chosen; of a given net only what is shown."""
+    if not given:
+        html.H2("Net")
+        _select("kind", "made from")
+        _select("map", "map", "kind == 'plane'")
+        _select("surface", "surface", "kind == 'isothermal'")
+        _select("source", "surface", "kind == 'cover'")
+        html.H2("Angles")
+        _number("theta", "\u03b8", ends=(1, 179))
+        _number("theta0", "\u03b8\u2080", ends=(1, 179))
+        words = "lock \u03b8 = \u03b8\u2080 (\u03bb = \u03bc)"
+        v3.VSwitch(v_model=("lock",), label=words, classes="in-lock", **SWITCH)
+        html.H2("Size")
+        _number("m", "m along u", "kind != 'cover'")
+        _number("n", "n along v", "kind != 'cover'")
+        _number("quads", "quads", "kind == 'cover'")
+        _number("direction", "direction", "kind == 'cover'")
+        bent = "kind == 'isothermal' && surface != 'sphere'"
+        _number("bend", "bending", bent, (0, "surface == 'rolled' ? 350 : 90"))
+        about = {"label": "M\u00f6bius image", "v_show": "kind == 'isothermal'"}
+        v3.VSwitch(v_model=("moebius",), classes="in-moebius", **about, **SWITCH)
+        inverted = "(kind == 'isothermal' && moebius)"
+        pole = f"{inverted} || (kind == 'plane' && map == 'moebius')"
+        for name, condition in (("px", pole), ("py", pole), ("pz", inverted)):
+            _number(name, f"pole {name[1]}", condition)
+        _profile()
+    _shown()
+
+
+def _select(name, label, condition="true"):
+    items = [{"title": words, "value": key} for key, words in choices.OPTIONS[name].items()]
+    about = {"label": label, "v_show": condition, "classes": f"my-2 in-{name}"}
+    v3.VSelect(v_model=(name,), items=(f"{name}_items", items), **about, **FIELD)
+
+
+def _number(name, label, condition="true", ends=None):
+    """A label, a slider and a field for the same value."""
+    low, high, step, unit = choices.ALLOWED[name][:4]
+    low, high = ends or (low, high)
+    value = {"model_value": (f"Number(Number({name}).toPrecision(10))",), "suffix": unit or None}
+    with html.Div(classes=f"ex-row in-{name}", v_show=condition):
+        html.Label(label, v_pre=True)
+        _slider(label, low, high, step, v_model=(name,))
+        _field(label, change=f"{name} = $event.target.value", **value)
+
+
+def _slider(label, low, high, step, **value):
+    ends = {"min": (f"{low}",), "max": (f"{high}",), "step": step}
+    v3.VSlider(aria_label=label, **value, **ends, **SLIDER)
+
+
+def _field(label, **value):
+    v3.VTextField(inputmode="decimal", aria_label=f"{label}, value", **value, **FIELD)
+
+
+def _profile():
+    """The radii, each with a slider and a field, the topmost first."""
+    low, _, step = choices.RADIUS[:3]
+    with html.Div(v_show="kind == 'revolution'"):
+        html.H2("Profile")
+        with html.Div(classes="d-flex ga-1 mb-1"):
+            for name, radii in choices.PROFILES.items():
+                about = {"classes": "text-none px-1 flex-grow-1", "click": f"radii = {list(radii)}"}
+                v3.VBtn(name, size="x-small", variant="tonal", **about)
+        with html.Div(classes="ex-profile"):
+            html.Div(v_html="profile_svg", classes="ex-plate")
+            with html.Div():
+                for k, height in reversed(list(enumerate(choices.HEIGHTS))):
+                    new = f"radii = radii.map((r, i) => i == {k} ? %s : r)"
+                    label, value = f"radius at height {height:g}", {"model_value": (f"radii[{k}]",)}
+                    with html.Div(classes=f"ex-row in-radius{k}"):
+                        _slider(label, low, 1.6, step, update_modelValue=new % "$event", **value)
+                        _field(label, change=new % "$event.target.value", **value)
+
+
+def _shown():
+    html.H2("Show")
+    with html.Div(style="display: grid; grid-template-columns: 1fr 1fr"):
+        for name in choices.FAMILIES:
+            colour = {"color": (f"colours.{name}",), "base_color": (f"colours.{name}",)}
+            about = {"value": name, "label": SHOWN[name], "classes": f"in-{name}"}
+            v3.VCheckbox(v_model=("families",), **about, **colour, **SMALL)
+    for name in ("parallelograms", "shade"):
+        v3.VCheckbox(v_model=(name,), label=SHOWN[name], classes=f"in-{name}", **SWITCH)
+    with html.Div(v_show="shade", classes="ex-scale"):
+        for colour, words in look.scale():
+            with html.Div():
+                html.I(style=f"background: {colour}")
+                html.Span(words)
+
+
+def _numbers():
+    """The parallelogram, and what there is to say of the net."""
+    html.H2("Parallelogram")
+    html.Div(v_html="parallelogram_svg", classes="ex-plate")
+    with html.Div(classes="ex-note ex-ratios out-ratios"):
+        html.Span("\u03bb = |d\u2082|/|d\u2081| = {{ numbers.lam }}")
+        html.Span("\u03bc = |m\u2081\u2083|/|m\u2082\u2084| = {{ numbers.mu }}")
+    html.H2("Over all {{ numbers.quads }} faces")
+    with html.Table(classes="ex-numbers"):
+        with html.Tr():
+            for words in ("", "mean", "off at most"):
+                html.Th(words)
+        for name, words in (("theta", "\u03b8"), ("theta0", "\u03b8\u2080")):
+            with html.Tr():
+                html.Td(words)
+                html.Td(f"{{{{ numbers.mean_{name} }}}}\u00b0", classes=f"out-mean-{name}")
+                html.Td(f"{{{{ numbers.{name}_off }}}}\u00b0", classes=f"out-off-{name}")
+        with html.Tr():
+            html.Td("flipped faces")
+            html.Td("{{ numbers.flips }}", colspan=2, classes="out-flips")
+        with html.Tr():
+            html.Td("medial lines")
+            html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
+    words = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "
+    words += "\u03b8\u2080 = {{ numbers.theta0 }}\u00b0"
+    html.Div(words, v_show="problem", classes="ex-note text-warning")
+    html.H2("Deviations, face by face")
+    html.Div(v_html="histogram_svg", classes="ex-plate out-histogram")
 
 
 def _bar(given):
@@ -53,8 +191,10 @@ def _bar(given):
         v3.VSpacer()
         with v3.VMenu():
             with v3.Template(v_slot_activator="{ props }"):
-                _button("mdi-download", "Save", v_bind="props", classes="in-save")
-            _save_items()
+                _button("mdi-download", "Save", "in-save", v_bind="props")
+            with v3.VList(density="compact"):
+                for suffix in SAVED:
+                    _saved(suffix, missing(suffix))
         if not given:
             _button("mdi-link-variant", "Copy link", click="utils.get('inet').copyLink(link)")
             _button("mdi-language-python", "Python", click="code_open = true")
@@ -62,64 +202,50 @@ def _bar(given):
         _button("mdi-help-circle-outline", "Help", click="help_open = true")
 
 
-def _button(icon, words, **options):
-    classes = f"text-none {options.pop('classes', '')}"
-    with v3.VBtn(size="small", variant="text", classes=classes, title=words, **options):
+def _button(icon, words, name="", **does):
+    classes = f"text-none {name}"
+    with v3.VBtn(size="small", variant="text", classes=classes, title=words, **does):
         v3.VIcon(icon, start=True)
         html.Span(words, classes="d-none d-md-inline")
 
 
-def _save_items():
-    with v3.VList(density="compact"):
-        for suffix in SAVED:
-            package = missing(suffix)
-            words = "picture" if suffix in MIME else "net with its curves"
-            words = "net" if suffix in (".ply", ".off") else words
-            mime = MIME.get(suffix, "application/octet-stream")
-            about = {"title": f"{suffix[1:].upper()}, {words}", "disabled": bool(package)}
-            if package:
-                about["subtitle"] = f"needs the package {package}"
-            v3.VListItem(click=f"utils.get('inet').save('{suffix}', '{mime}')", **about)
+def _saved(suffix, package):
+    """One format that the net can be saved in, if the package that it needs is there."""
+    words = "net with its curves" if suffix in WITH_CURVES else "net"
+    words = "picture" if suffix in MIME else words
+    mime = MIME.get(suffix, "application/octet-stream")
+    about = {"title": f"{suffix[1:].upper()}, {words}", "disabled": bool(package)}
+    if package:
+        about["subtitle"] = f"needs the package {package}"
+    v3.VListItem(click=f"utils.get('inet').save('{suffix}', '{mime}')", **about)
 
 
 def _view(plotter):
+    """The net, and one line below: why there is none, how far the search is, or on the net."""
+    words = "the net; arrow keys turn it, plus and minus zoom, F fits it"
+    keys = {"tabindex": "0", "keydown": "utils.get('inet').keys($event)"}
+    small = {"size": "x-small", "color": "primary"}
     with html.Div(classes="ex-middle"):
-        words = "the net; arrow keys turn it, plus and minus zoom, F fits it"
-        keys = {"tabindex": "0", "keydown": "utils.get('inet').keys($event)"}
         with html.Div(classes="ex-view", aria_label=words, **keys):
             loaded = "utils.get('inet')?.loaded()"
             view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
-            _tools()
-        _status()
+            with html.Div(classes="ex-tools"):
+                for icon, words, call in TOOLS:
+                    about = {"title": words, "aria_label": words, "classes": f"in-{call}"}
+                    click = f"trigger('{call}', [utils.get('inet').place()])"
+                    v3.VBtn(icon=icon, size="x-small", click=click, **about)
+        with html.Div(classes="ex-status", role="status"):
+            shown = {"v_if": ("problem && !searching",), "classes": "text-warning out-problem"}
+            html.Div("{{ problem }}", **shown)
+            with html.Div(v_if=("searching",)):
+                v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
+                html.Span("{{ progress }}", classes="out-progress ml-2")
+                v3.VBtn("Stop", click="trigger('stop')", classes="text-none ml-2 in-stop", **small)
+            with html.Div(v_if=("!searching && (message || can_search)",)):
+                html.Span("{{ message }}", v_if=("!problem",), classes="out-message")
+                again = {"v_if": ("can_search",), "classes": "text-none ml-2 in-run"}
+                v3.VBtn("Run again", click="trigger('run')", **again, **small)
     return view
-
-
-def _tools():
-    with html.Div(classes="ex-tools"):
-        for icon, words, call in (
-            ("mdi-fit-to-page-outline", "Fit the net (F)", "fit"),
-            ("mdi-arrow-down-circle-outline", "From above", "from_above"),
-            ("mdi-arrow-right-circle-outline", "From the side", "from_side"),
-        ):
-            about = {"title": words, "aria_label": words, "classes": f"in-{call}"}
-            click = f"trigger('{call}', [utils.get('inet').place()])"
-            v3.VBtn(icon=icon, size="x-small", click=click, **about)
-
-
-def _status():
-    """One line below the view: why there is no net, or how far the search is, or on the net."""
-    small = {"size": "x-small", "color": "primary"}
-    with html.Div(classes="ex-status", role="status"):
-        shown = {"v_if": ("problem && !searching",), "classes": "text-warning out-problem"}
-        html.Div("{{ problem }}", **shown)
-        with html.Div(v_if=("searching",)):
-            v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
-            html.Span("{{ progress }}", classes="out-progress ml-2")
-            v3.VBtn("Stop", click="trigger('stop')", classes="text-none ml-2 in-stop", **small)
-        with html.Div(v_if=("!searching && (message || can_search)",)):
-            html.Span("{{ message }}", v_if=("!problem",), classes="out-message")
-            again = {"v_if": ("can_search",), "classes": "text-none ml-2 in-run"}
-            v3.VBtn("Run again", click="trigger('run')", **again, **small)
 
 
 def _dialogs():

@@ -3,9 +3,12 @@
 Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .. import measure
+from ..design.report import Report
 from ..parallelogram import ratios
 from ..surfaces import spline_profile
 from .choices import HEIGHTS
@@ -16,12 +19,8 @@ BINS = 27
 EXACT = 1e-9  # degrees: smaller deviations are rounding
 
 
-def parallelogram(theta, theta0):
-    """The parallelogram of the angles (radians) with its two marked angles.
-
-    Sides along the diagonals of the quads, in the colours of d1 and d2; diagonals along the
-    medial lines, in those of u and v.
-    """
+def parallelogram(theta: float, theta0: float) -> str:
+    """The parallelogram of the angles (radians), sides as d1 and d2, diagonals as u and v."""
     slanted, centre = ratios(theta, theta0)[0] * np.exp(1j * theta), complex(*BOX) / 2
     shape = np.array([slanted, 0, 1, 1 + slanted]) - (1 + slanted) / 2
     scale = min((BOX[0] - 60) / np.ptp(shape.real), (BOX[1] - 44) / np.ptp(shape.imag))
@@ -40,11 +39,8 @@ def parallelogram(theta, theta0):
     return _svg(BOX, parts, f"parallelogram with the angle {np.degrees(theta):.4g} degrees")
 
 
-def histograms(off, asked):
-    """How far both angles are off, face by face: two histograms with one scale.
-
-    off: the deviations of theta and of theta0 in degrees, each (f,); asked: the two angles.
-    """
+def histograms(off: Sequence[np.ndarray], asked: tuple[float, float]) -> str:
+    """How far two angles are off those asked for, each (f,), degrees: histograms, one scale."""
     reach = _nice(max(EXACT, *(np.abs(x).max() for x in off)))
     left, middle, right = 10, BOX[0] / 2, BOX[0] - 10
     parts, wide = [], (right - left) / BINS
@@ -70,7 +66,7 @@ def _nice(x):
     return float(f"{next(k for k in (1, 2, 5, 10) if x <= k * power * (1 + 1e-12)) * power:.0e}")
 
 
-def profile(radii):
+def profile(radii: Sequence[float]) -> str:
     """The meridian with its radii, the axis at the left."""
     box, points = (110, 150), list(zip(radii, HEIGHTS, strict=True))
     scale = min((box[0] - 16) / max(1.3, 1.1 * max(radii)), (box[1] - 16) / HEIGHTS[-1])
@@ -88,13 +84,13 @@ def profile(radii):
     return _svg(box, parts, "profile")
 
 
-def short(x, digits=2):
+def short(x: float, digits: int = 2) -> str:
     """A number with so many digits, in few characters: 0.25, 4.3e-13, with a true minus."""
     text = f"{x:.{digits}g}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
     return text.replace("-", "\u2212")
 
 
-def numbers(about, V, Q):
+def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     """A `Report` on the net V, Q as the page shows it, angles in degrees: a dict of texts."""
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)

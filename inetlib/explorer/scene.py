@@ -17,10 +17,7 @@ VIEWS = {  # azimuth and elevation of the viewer, degrees
 
 
 class Scene:
-    """A plotter with two meshes, the cells and the curves of a net, changed in place.
-
-    Arrays that stay the same are not sent to the browser again.
-    """
+    """A plotter with the faces and the curves of a net; only what changes is sent to a browser."""
 
     def __init__(self):
         pyvista = view.pyvista_module()
@@ -46,49 +43,43 @@ class Scene:
         new, self._known = known != self._known, known
         if new:
             self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms)
-        points = look.points(np.asarray(V, dtype=np.float32), self._layout)
-        self.faces.points = self.curves.points = points
-        if new:
-            self._cells(palette, len(Q))
+        plan = self._layout
+        self.faces.points = self.curves.points = look.points(np.asarray(V, np.float32), plan)
+        if new:  # cells: the old colours do not fit them
+            self.faces.cell_data.clear()
+            self.curves.cell_data.clear()
+            self.faces.faces = np.concatenate([_counted(plan.quads), _counted(plan.triangles)])
+            lines = plan.lines or {"none": np.zeros((1, 2), dtype=np.int64)}
+            self.curves.lines = _counted(np.concatenate(list(lines.values())))
+            colours = [to_rgb(palette.families.get(name, palette.face)) for name in lines]
+            rgb = np.repeat(np.round(255 * np.array(colours)), [*map(len, lines.values())], axis=0)
+            self.curves.cell_data["rgb"] = rgb.astype(np.uint8)
+            self.actor.visibility = bool(plan.lines)
+            self.actor.prop.line_width = look.line_width(len(Q))
         if new or shade is not None:
-            self.faces.cell_data["rgb"] = look.fills(self._layout, palette, shade)
+            self.faces.cell_data["rgb"] = look.fills(plan, palette, shade)
             self.plotter.set_background(palette.background)
 
-    def _cells(self, palette, quads):
-        """New cells: the old colours do not fit them."""
-        self.faces.cell_data.clear()
-        self.curves.cell_data.clear()
-        filled = _counted(self._layout.quads), _counted(self._layout.triangles)
-        self.faces.faces = np.concatenate(filled)
-        lines = {name: pairs for name, pairs in self._layout.lines.items() if len(pairs)}
-        colours = np.array([to_rgb(palette.families[name]) for name in lines] or [(0, 0, 0)])
-        pairs = list(lines.values()) or [np.zeros((1, 2), dtype=np.int64)]
-        self.curves.lines = _counted(np.concatenate(pairs))
-        rgb = np.repeat(np.round(255 * colours), [len(p) for p in pairs], axis=0)
-        self.curves.cell_data["rgb"] = rgb.astype(np.uint8)
-        self.actor.visibility = bool(lines)
-        self.actor.prop.line_width = look.line_width(quads)
-
     def camera(self, V, azimuth, elevation, aspect=1.0):
-        """The camera (for vtk.js) that sees all of V from a direction, as near as it can.
+        """The camera (for vtk.js) that sees all of V, as near as it can.
 
         azimuth, elevation: degrees; aspect: width / height of the window.
         """
-        view.aim(self.plotter.camera, V, tuple(np.radians([azimuth, elevation])), aspect)
+        sight = tuple(np.radians([azimuth, elevation]))
+        view.aim(self.plotter.camera, V, sight, aspect)
         return self.plotter.camera
 
 
-def sight(kind, V):
+def sight(kind: str, V: np.ndarray | None) -> tuple:
     """From where a net is seen by default: azimuth and elevation in degrees."""
     flat = V is not None and not V[:, 2].any()
     return VIEWS["plane" if flat else kind]
 
 
-def is_lost(V, before):
+def is_lost(V: np.ndarray, before: np.ndarray) -> bool:
     """Whether a net V is far off the place and size of the one that was fitted into the view."""
-    (middle, size), (old, reach) = (
-        ((W.min(axis=0) + W.max(axis=0)) / 2, np.abs(W - W.mean(axis=0)).max()) for W in (V, before)
-    )
+    middle, old = ((W.min(axis=0) + W.max(axis=0)) / 2 for W in (V, before))
+    size, reach = (np.abs(W - W.mean(axis=0)).max() for W in (V, before))
     return np.abs(middle - old).max() > reach / 2 or not 1 / STRETCH < size / reach < STRETCH
 
 
@@ -97,10 +88,10 @@ def _counted(cells):
     return np.insert(cells, 0, cells.shape[1], axis=1).ravel()
 
 
-_free = []  # scenes of tabs that were closed
+_free: list[Scene] = []  # scenes of tabs that were closed
 
 
-def borrow():
+def borrow() -> Scene:
     """A `Scene`, for `give_back` when it is no longer needed.
 
     VTK objects that trame has sent to a browser call Python when they are destroyed, and end the
@@ -109,7 +100,7 @@ def borrow():
     return _free.pop() if _free else Scene()
 
 
-def give_back(scene):
+def give_back(scene: Scene) -> None:
     """Keep a borrowed scene for the next tab."""
     scene._known = None
     _free.append(scene)

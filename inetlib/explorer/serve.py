@@ -8,8 +8,10 @@ import asyncio
 import os
 import secrets
 import signal
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 from aiohttp import WSMsgType, web
@@ -46,7 +48,7 @@ class Door:
         pages = App("pages")
         pages.server.enable_module(vue3)
         self._www = Path(pages.server._www)
-        folders = {name: _folder(folder) for name, folder in pages.server.serve.items()}
+        folders = {k: x if isinstance(x, str) else x[0] for k, x in pages.server.serve.items()}
         pages.close()
         routes = [
             web.get("/", self._index),
@@ -143,21 +145,18 @@ async def _talk(server, socket):
         await task
 
 
-def _folder(value):
-    return value[0] if isinstance(value, (list, tuple)) else value
-
-
 async def _up(request):
     """The files of a given net's page are those of the explorer."""
     rest = request.match_info["rest"]
     raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
 
 
-def serve(surface=None, path=None, port=None, ready=print):
+def serve(
+    surface: Any = None, path: Any = None, port: int | None = None, ready: Callable = print
+) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
-    surface, path: `io.Surface` of a file and its name, or None; port: None for the usual one or
-    the next that is free, 0 for any.  OSError when the port is taken.
+    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`.
     """
 
     async def run():

@@ -24,12 +24,9 @@ class Run:
 class Session:
     """A `choices.Choice` and the net that belongs to it.
 
-    surface: `io.Surface` of the file on the command line, path its name, or None; net: V, Q of
-    a net that is given and not made here.
-
-    V, Q, report    the net that is shown and its numbers; `shown` is the choice it belongs to
-    message         a sentence on it; problem: why there is no net of the choice, or ""
-    run             the search under way, or None; steps: how many it has made
+    surface, path: `io.Surface` of the file on the command line and its name; net: V, Q of a net
+    that is given and not made here.  V, Q, report, message: the net that is shown, of the choice
+    `shown`; problem: why there is no net of the choice, or ""; run: the search under way.
     """
 
     def __init__(self, surface=None, path=None, net=None):
@@ -44,8 +41,10 @@ class Session:
             V, Q = mesh.check_arrays(*net)
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0)
-            made = nets.Made(V, Q, "a net from Python; deviations are from its mean angles")
-            self._settle(self.choice, made, _report(self.choice, made))
+            words = "a net from Python; deviations are from its mean angles"
+            self._settle(None, None, lambda _: nets.Made(V, Q, words))
+            if self.problem:
+                raise ValueError(self.problem)
 
     def change(self, **values):
         """Take new values; the sentences on those that are refused."""
@@ -62,13 +61,28 @@ class Session:
         self.stop()
         self.run = None
         if not self.given:
-            self._settle(self.choice, *_tried(self.choice, nets.make))
+            self._settle(None, None, nets.make)
 
-    def _settle(self, choice, made, about, problem=""):
-        self.problem = problem
-        if made is not None:
-            self.V, self.Q, self.message = made
-            self.shown, self.report = choice, about
+    def _settle(self, run, then, make, *known):
+        """Show the net that is made, or say why there is none, unless a newer run has begun.
+
+        then: the run that is under way afterwards.  Collapsed faces are no net.
+        """
+        choice, problem = run.choice if run else self.choice, ""
+        try:
+            made = make(choice, *known)
+            angles = np.radians([choice.theta, choice.theta0])
+            about = report.report(made.V, made.Q, theta=angles[0], theta0=angles[1])
+        except (ValueError, ArithmeticError, MemoryError) as error:
+            made, problem = None, f"no net: {error or type(error).__name__}"
+        with self._lock:
+            if run is not self.run:
+                return False
+            self.run, self.problem = then, problem
+            if made is not None:
+                self.V, self.Q, self.message = made
+                self.shown, self.report = choice, about
+            return True
 
     def begin(self):
         """The `Run` of a new search, for `search`; an older one is asked to stop."""
@@ -82,10 +96,7 @@ class Session:
             self.run.stopped = True
 
     def search(self, run, seen=None):
-        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and every step.
-
-        What a run finds after a newer one has begun is forgotten.
-        """
+        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and each step."""
 
         def after(step, V, Q):
             if run is not self.run or run.stopped:
@@ -95,32 +106,22 @@ class Session:
                 seen(V, Q, self.steps)
             return not run.stopped
 
-        found = _tried(run.choice, nets.make, self.surface, after)
-        with self._lock:
-            if run is self.run:
-                self._settle(run.choice, *found)
-                self.run = None
+        self._settle(run, None, nets.make, self.surface, after)
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        made = nets.Made(V, Q, f"step {self.steps}")
-        found = _tried(run.choice, lambda _: made)
-        with self._lock:
-            if run is self.run:
-                self._settle(run.choice, *found)
-            return run is self.run
+        words = f"step {self.steps}"
+        return self._settle(run, run, lambda _: nets.Made(V, Q, words))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
-        return np.degrees(measure.angles(self.V, self.Q)) - [
-            [self.shown.theta],
-            [self.shown.theta0],
-        ]
+        asked = np.array([[self.shown.theta], [self.shown.theta0]])
+        return np.degrees(measure.angles(self.V, self.Q)) - asked
 
     def colours(self):
         """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
-        off = measure.deviations(self.V, self.Q, **_wanted(self.shown))
-        return look.shades(np.degrees(off).max(axis=0))
+        asked = np.radians([self.shown.theta, self.shown.theta0])
+        return look.shades(np.degrees(measure.deviations(self.V, self.Q, *asked)).max(axis=0))
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
@@ -146,23 +147,6 @@ class Session:
             path = Path(folder) / f"net{suffix}"
             io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
             return path.read_bytes()
-
-
-def _wanted(choice):
-    return {"theta": np.radians(choice.theta), "theta0": np.radians(choice.theta0)}
-
-
-def _report(choice, made):
-    return report.report(made.V, made.Q, **_wanted(choice))
-
-
-def _tried(choice, make, *known):
-    """(a net, its `Report`, "") or (None, None, why there is none); collapsed faces are no net."""
-    try:
-        made = make(choice, *known)
-        return made, _report(choice, made), ""
-    except (ValueError, ArithmeticError, MemoryError) as error:
-        return None, None, f"no net: {error or type(error).__name__}"
 
 
 def missing(suffix: str) -> str:
