@@ -31,9 +31,6 @@ FOUR = tuple(product((("u", "v"), FAMILIES), (False, True)))  # families, parall
 each_layout = pytest.mark.parametrize(("families", "parallelograms"), FOUR)
 
 
-# --- choices ------------------------------------------------------------------------------
-
-
 def numbers(low, high, step, unit, open, whole):
     """A strategy: all allowed values of a number."""
     if whole:
@@ -187,9 +184,6 @@ def test_whatever_json_a_browser_sends_is_taken_or_refused(values):
     assert changed(Choice(), **asdict(choice)) == (choice, [])
 
 
-# --- the lock, and the angle of bending ---------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("locked", "values", "angles", "lock"),
     [
@@ -234,9 +228,6 @@ def test_the_angle_of_bending_is_clamped_when_the_sheet_is_left(other):
     assert choice == Choice(surface=other) and "from 0 to 90\u00b0" in sentence
     assert changed(Choice(surface=other), bend=300, surface="rolled")[0].bend == 300
     assert changed(bent, theta=20)[0].bend == 300
-
-
-# --- links --------------------------------------------------------------------------------
 
 
 PAIRS = st.lists(st.tuples(st.sampled_from(sorted(ALLOWED)) | st.text(max_size=5), st.text()))
@@ -284,9 +275,6 @@ def test_links_of_an_earlier_version_open_the_same_nets(query):
     V, Q, _ = nets.make(choice)
     assert problems == [] and len(Q) == OPENED[query][0]
     assert np.linalg.norm(V) == pytest.approx(OPENED[query][1], rel=1e-8)
-
-
-# --- nets that are constructed ------------------------------------------------------------
 
 
 EXACT = {
@@ -457,9 +445,6 @@ def test_a_pole_on_a_vertex_and_a_profile_that_crosses_the_axis_are_no_nets():
         assert np.array_equal(made.V[7], on)
 
 
-# --- nets that are found ------------------------------------------------------------------
-
-
 def searched(seen=None, **values):
     """A session that has searched the net of these values."""
     made = Session()
@@ -535,6 +520,21 @@ def test_a_run_that_was_stopped_before_it_began_makes_no_step():
     assert way == [] and np.array_equal(made.V, surfaces.freeform_patch(4, 4)[0])
 
 
+def test_a_step_that_comes_late_does_not_take_the_place_of_the_end(monkeypatch):
+    made, known = Session(), session.report.report
+    made.change(kind="freeform", m=4, n=4)
+    run = made.begin()
+
+    def late(*args, **wanted):  # the search ends while the step is measured
+        monkeypatch.setattr(session.report, "report", known)
+        made.search(run)
+        return known(*args, **wanted)
+
+    monkeypatch.setattr(session.report, "report", late)
+    assert not made.on_the_way(run, *surfaces.freeform_patch(4, 4))
+    assert made.message.startswith("converged") and made.run is None
+
+
 def test_what_an_older_run_finds_is_forgotten():
     made = built(m=4, n=4)
     former, newer = made.V, []
@@ -586,9 +586,6 @@ def test_a_constructed_net_ends_the_search_under_way():
     assert made.V is plane
 
 
-# --- what is said of a net ----------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "values",
     [{"map": "inverse"}, {"kind": "isothermal", "surface": "minimal"}, {"kind": "revolution"}],
@@ -626,9 +623,6 @@ def test_the_worst_face_is_the_darkest():
     assert np.all(np.diff(brightness[order]) <= 0) and brightness[order[0]] > brightness[order[-1]]
 
 
-# --- a net that is given ------------------------------------------------------------------
-
-
 def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles():
     V, Q = surfaces.freeform_patch(5, 4)
     made = Session(net=(V, Q))
@@ -655,9 +649,6 @@ def test_a_given_net_is_checked(bad):
     }[bad]
     with pytest.raises(ValueError):
         Session(net=(V, Q))
-
-
-# --- saving -------------------------------------------------------------------------------
 
 
 PACKAGES = {".vtp": "vtkmodules", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
@@ -744,9 +735,6 @@ def test_all_formats_are_offered_and_missing_packages_are_named(monkeypatch):
     assert {s: session.missing(s) for s in session.SAVED if session.missing(s)} == PACKAGES
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
     assert not any(map(session.missing, session.SAVED))
-
-
-# --- what a net looks like ----------------------------------------------------------------
 
 
 LOOKED = {
@@ -878,9 +866,6 @@ def test_the_scale_names_the_deviations_of_its_colours():
     below = look.shades(np.array([values[1] / 10]))[0]
     assert scale[0][0] == "rgb({},{},{})".format(*below)
     assert len({colour for colour, _ in scale}) == len(scale)
-
-
-# --- small drawings -----------------------------------------------------------------------
 
 
 MODERATE = list(product((35, 60, 90, 140), (40, 90, 120)))
