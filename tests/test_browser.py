@@ -93,9 +93,6 @@ def is_drawn(picture):
     return 0.03 < share < 0.97 and colours > 50
 
 
-# --- looking and changing -----------------------------------------------------------------
-
-
 def test_the_page_shows_a_net_and_its_numbers(tab):
     reader = tab()
     assert is_drawn(reader.picture())
@@ -202,9 +199,6 @@ def test_both_ends_of_both_sliders_leave_a_page_that_works(tab):
         judge(reader)
 
 
-# --- optimisations ------------------------------------------------------------------------
-
-
 def test_an_optimisation_runs_can_be_stopped_and_run_again(tab):
     reader = tab("kind=freeform&m=20&n=20&theta=60&theta0=45")
     assert "converged in" in reader.text(".out-message")
@@ -224,9 +218,6 @@ def test_an_optimisation_runs_can_be_stopped_and_run_again(tab):
     reader.settled()
     assert "converged in" in reader.text(".out-message")
     assert reader.angles() == ["60.000000", "45.000000"]
-
-
-# --- saving, links, tabs ------------------------------------------------------------------
 
 
 def save(reader, words, tmp_path):
@@ -268,30 +259,6 @@ def test_the_code_and_the_link_can_be_copied(tab, address):
     reader.page.get_by_title("Python").click()
     code = reader.text(".ex-code")
     assert len(code.splitlines()) == 3 and code == reader.page.evaluate("trame.state.get('code')")
-
-
-def test_wrong_parameters_of_the_address_get_a_message(tab):
-    reader = tab("theta=500&m=abc&colour=red&kind=plane&theta0=45")
-    words = reader.text(".out-alert")
-    for part in ("theta = '500'", "m = 'abc'", "'colour' is no parameter"):
-        assert part in words
-    assert reader.angles() == ["60.000000", "45.000000"]
-    judge(reader)
-
-
-def test_two_tabs_do_not_disturb_each_other(tab):
-    one, two = tab("theta=70"), tab("theta=40&kind=isothermal&m=8&n=8")
-    one.type("theta0", "80")
-    assert one.angles() == ["70.000000", "80.000000"]
-    assert choices.parse(two.query())[0].theta0 == 60
-    two.type("theta", "41")
-    two.page.close()
-    one.type("theta", "71")
-    assert one.angles() == ["71.000000", "80.000000"]
-    judge(one)
-
-
-# --- keyboard, touch, sizes ---------------------------------------------------------------
 
 
 def test_the_keyboard_turns_the_view_and_moves_sliders(tab):
@@ -436,9 +403,6 @@ def test_from_slider_to_picture(tab, side, capsys):
             f"of {len(times)} moves ({min(times):.0f} to {max(times):.0f})"
         )
     assert len(times) == 20 and min(times) > 0
-
-
-# --- the program --------------------------------------------------------------------------
 
 
 def test_a_file_of_the_command_line_is_covered_and_sigint_ends_everything(chromium, tmp_path):

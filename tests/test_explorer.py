@@ -20,51 +20,30 @@ from inetlib.explorer import choices, look, nets, plates, session
 from inetlib.explorer.choices import Choice, changed, link, parse
 from inetlib.explorer.session import Session
 
-NUMBERS = {  # the smallest and the largest value; "open": without them; "whole": no fractions
-    "theta": (0, 180, "open"),
-    "theta0": (0, 180, "open"),
-    "m": (3, 150, "whole"),
-    "n": (1, 150, "whole"),
-    "bend": (0, 350, ""),  # of a rolled sheet
-    "px": (-3, 3, ""),
-    "py": (-3, 3, ""),
-    "pz": (-3, 3, ""),
-    "quads": (10, 20000, "whole"),
-    "direction": (-90, 90, ""),
-}
-RADII = (0.05, 3)
-NAMED = {"px": "pole x", "py": "pole y", "pz": "pole z"}
-PICKED = {
-    "kind": ("plane", "isothermal", "revolution", "freeform", "cover"),
-    "map": ("square", "inverse", "exp", "moebius", "identity"),
-    "surface": ("minimal", "sphere", "rolled"),
-    "source": ("roof", "saddle", "shell", "file"),
-}
-SWITCHES = "lock", "moebius", "parallelograms", "shade"
-FAMILIES = "u", "v", "d1", "d2"
+NUMBERS = {k: x for k, x in choices.ALLOWED.items() if isinstance(x, choices.Range)}
+NUMBERS = NUMBERS | {"bend": choices.BEND_ROLLED}
+RADII = NUMBERS.pop("radii")
+SWITCHES = [k for k, x in choices.ALLOWED.items() if x is choices.SWITCH]
+PICKED, FAMILIES = choices.OPTIONS, choices.FAMILIES
 ANGLES = (60, 45), (75, 110), (120, 50)
 EXTREME = tuple(product((0.01, 1, 90, 179, 179.99), repeat=2))
 FOUR = tuple(product((("u", "v"), FAMILIES), (False, True)))  # families, parallelograms
 each_layout = pytest.mark.parametrize(("families", "parallelograms"), FOUR)
 
 
-# --- choices ------------------------------------------------------------------------------
-
-
-def numbers(name):
+def numbers(low, high, step, unit, open, whole):
     """A strategy: all allowed values of a number."""
-    low, high, how = NUMBERS[name]
-    if how == "whole":
+    if whole:
         return st.integers(low, high)
-    return st.floats(low, high, exclude_min=how == "open", exclude_max=how == "open")
+    return st.floats(low, high, exclude_min=open, exclude_max=open)
 
 
 ALLOWED = {
-    **{name: st.sampled_from(options) for name, options in PICKED.items()},
-    **{name: numbers(name) for name in NUMBERS},
+    **{name: st.sampled_from(list(options)) for name, options in PICKED.items()},
+    **{name: numbers(*bounds) for name, bounds in NUMBERS.items()},
     **dict.fromkeys(SWITCHES, st.booleans()),
     "families": st.lists(st.sampled_from(FAMILIES), unique=True).map(tuple),
-    "radii": st.tuples(*[st.floats(*RADII)] * 7),
+    "radii": st.tuples(*[numbers(*RADII)] * 7),
 }
 SIMPLE = st.sampled_from([None, True, 0, 1.5, -1, "", "u", "60", "x", 10**400, float("nan")])
 JSON = SIMPLE | st.lists(SIMPLE, max_size=8) | st.lists(st.lists(SIMPLE, max_size=2), max_size=2)
@@ -81,13 +60,6 @@ def used(choice):
         "freeform": {"m", "n"},
         "cover": {"source", "quads", "direction"},
     }[choice.kind]
-
-
-def test_the_tables_of_these_tests_name_every_value_and_option():
-    assert set(ALLOWED) == set(choices.NAMES) == set(asdict(Choice()))
-    for name, options in PICKED.items():
-        assert set(choices.OPTIONS[name]) == set(options)
-    assert len(choices.OPTIONS) == len(PICKED)
 
 
 @given(st.fixed_dictionaries(ALLOWED))
@@ -111,13 +83,9 @@ def test_allowed_values_are_taken_and_a_link_keeps_all_that_the_kind_uses(values
 
 @pytest.mark.parametrize("kind", PICKED["kind"])
 def test_a_link_says_nothing_twice_and_nothing_that_its_kind_does_not_know(kind):
-    names = [pair.split("=")[0] for pair in link(changed(Choice(), kind=kind)[0]).split("&")]
-    assert len(names) == len(set(names))
-    other = set().union(
-        *(used(Choice(kind=k, moebius=True, map="moebius")) for k in PICKED["kind"])
-    )
-    mine = used(Choice(kind=kind, moebius=True, map="moebius"))
-    assert mine <= set(names) and not (other - mine) & set(names)
+    choice = Choice(kind=kind, moebius=True, map="moebius")
+    names = [pair.split("=")[0] for pair in link(choice).split("&")]
+    assert sorted(names) == sorted(used(choice))
 
 
 def refused(name, value, before=None):
@@ -131,14 +99,14 @@ def refused(name, value, before=None):
 
 @pytest.mark.parametrize("name", NUMBERS)
 def test_a_wrong_number_is_refused_in_a_sentence_with_its_name_itself_and_the_range(name):
-    low, high, how = NUMBERS[name]
-    outside = [low, high] if how == "open" else [low - 1, high + 1]
-    fractions = [low + 2.5, f"{high - 0.5}"] if how == "whole" else []
+    low, high, _, _, open, whole = NUMBERS[name]
+    outside = [low, high] if open else [low - 1, high + 1]
+    fractions = [low + 2.5, f"{high - 0.5}"] if whole else []
     for value in ["nan", float("inf"), "-inf", "1e999", 1e9, "abc", "", *outside, *fractions]:
         sentence = refused(name, value)
-        assert sentence.startswith(f"{NAMED.get(name, name)} = {str(value)!r}: ")
+        assert sentence.startswith(f"{choices.WORDS.get(name, name)} = {str(value)!r}: ")
         assert re.findall(r"-?\d+", sentence.split(": ")[1]) == [str(low), str(high)]
-        assert ("whole" in sentence) is (how == "whole")
+        assert ("whole" in sentence) is whole
 
 
 @pytest.mark.parametrize("name", PICKED)
@@ -157,12 +125,9 @@ def test_a_switch_is_on_or_off_and_nothing_else(name):
         assert getattr(changed(Choice(), **{name: text})[0], name) is state
 
 
-@pytest.mark.parametrize("value", ["w", "u,w", "u v", ["u", "D1"], ["u,v"]])
-def test_unknown_families_are_refused_with_the_known_ones(value):
-    assert "u, v, d1, d2" in refused("families", value)
-
-
-def test_families_come_in_one_order_and_may_be_none():
+def test_families_come_in_one_order_and_may_be_none_but_no_others():
+    for value in ("w", "u,w", "u v", ["u", "D1"], ["u,v"]):
+        assert "u, v, d1, d2" in refused("families", value)
     for some in chain.from_iterable(combinations(FAMILIES, k) for k in range(5)):
         backwards = some[::-1]
         for value in (backwards, list(backwards), ",".join(backwards)):
@@ -205,6 +170,8 @@ def test_long_and_hostile_values_are_shortened_and_made_harmless(name):
 
 
 def test_each_wrong_value_has_a_sentence_of_its_own_and_the_good_ones_are_taken():
+    locked = changed(Choice(), theta=50, lock=True)[0]
+    assert changed(locked, theta=180)[0] == changed(locked, theta0=180)[0] == locked
     choice, problems = changed(Choice(), theta=0, m="2.5", n="4", kind="cube", shade="1")
     assert choice == Choice(n=4, shade=True)
     assert [p.split()[0] for p in problems] == ["theta", "m", "kind"]
@@ -215,19 +182,6 @@ def test_whatever_json_a_browser_sends_is_taken_or_refused(values):
     choice, problems = changed(Choice(), **values)
     assert len(problems) <= len(values) and all(isinstance(p, str) for p in problems)
     assert changed(Choice(), **asdict(choice)) == (choice, [])
-
-
-@pytest.mark.parametrize("name", ALLOWED)
-def test_values_of_another_type_are_refused_not_raised(name):
-    for value in (None, [], ["plane"], {}, 10**400, -(10**400), [[1]], [None] * 7):
-        choice, problems = changed(Choice(), **{name: value})
-        if name == "families" and value in ([], {}):
-            assert (choice, problems) == (Choice(families=()), [])
-        else:
-            assert choice == Choice() and len(problems) == 1
-
-
-# --- the lock, and the angle of bending ---------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -254,13 +208,6 @@ def test_with_the_lock_on_one_angle_takes_the_other_along(locked, values, angles
     assert (after.theta, after.theta0) == angles and after.lock is lock
 
 
-@pytest.mark.parametrize("name", ["theta", "theta0"])
-def test_a_refused_angle_moves_neither_of_the_locked_ones(name):
-    before = changed(Choice(), theta=50, lock=True)[0]
-    after, problems = changed(before, **{name: 180})
-    assert after == before and len(problems) == 1
-
-
 @given(st.lists(st.fixed_dictionaries({}, optional=ALLOWED), max_size=4))
 def test_locked_angles_are_equal_and_only_sheets_are_bent_beyond_90_degrees(changes):
     choice = Choice()
@@ -281,9 +228,6 @@ def test_the_angle_of_bending_is_clamped_when_the_sheet_is_left(other):
     assert choice == Choice(surface=other) and "from 0 to 90\u00b0" in sentence
     assert changed(Choice(surface=other), bend=300, surface="rolled")[0].bend == 300
     assert changed(bent, theta=20)[0].bend == 300
-
-
-# --- links --------------------------------------------------------------------------------
 
 
 PAIRS = st.lists(st.tuples(st.sampled_from(sorted(ALLOWED)) | st.text(max_size=5), st.text()))
@@ -310,7 +254,24 @@ def test_no_link_and_no_name_in_it_is_too_long():
     assert choice == Choice() and 0 < len(problems) < 1000  # the rest is not looked at
 
 
-# --- nets that are constructed ------------------------------------------------------------
+OPENED = """
+kind=plane&theta=33.3&theta0=141.7&lock=0&map=moebius&m=9&n=7&px=0.25&py=2 63 4.32344495
+kind=plane&map=exp&m=9&n=7&families=d1,d2&parallelograms=0&shade=1 63 14.4569748
+kind=isothermal&theta=75&surface=minimal&m=9&n=7&bend=45&moebius=1&px=-1.4&py=0.6 63 11.0020908
+?kind=isothermal&surface=rolled&m=9&n=7&bend=300&moebius=0&pz=0.3 63 4.27546958
+kind=revolution&theta=70&lock=1&m=9&n=7&radii=0.7,0.95,1.08,1.12,1.08,0.95,0.7 63 17.1879575
+kind=freeform&theta=60&theta0=45&m=5&n=4 20 0.869020242
+kind=cover&source=saddle&quads=60&direction=20.5 58 6.26601768
+"""  # links of an earlier version, the number of faces, and the norm of V
+
+
+@pytest.mark.parametrize("line", OPENED.strip().splitlines())
+def test_links_of_an_earlier_version_open_the_same_nets(line):
+    query, faces, size = line.split()
+    choice, problems = parse(query)
+    V, Q, _ = nets.make(choice)
+    assert problems == [] and len(Q) == int(faces)
+    assert np.linalg.norm(V) == pytest.approx(float(size), rel=1e-8)
 
 
 EXACT = {
@@ -386,7 +347,7 @@ def test_three_lines_of_python_make_exactly_the_same_net_and_keep_all_digits(nam
         assert same(found.code(), found.V, found.Q)
         again, problems = parse(link(found.choice))
         assert problems == []
-        assert np.array_equal(nets.make(again).V, found.V)
+        assert np.array_equal(nets.make(again)[0], found.V)
 
 
 @each_constructed
@@ -481,9 +442,6 @@ def test_a_pole_on_a_vertex_and_a_profile_that_crosses_the_axis_are_no_nets():
         assert np.array_equal(made.V[7], on)
 
 
-# --- nets that are found ------------------------------------------------------------------
-
-
 def searched(seen=None, **values):
     """A session that has searched the net of these values."""
     made = Session()
@@ -496,7 +454,7 @@ def searched(seen=None, **values):
 @pytest.mark.parametrize(
     "values",
     [{"kind": "freeform", "m": 5, "n": 6}]
-    + [{"kind": "cover", "source": s, "quads": 60, "direction": 20} for s in PICKED["source"][:3]],
+    + [{"kind": "cover", "source": s, "quads": 60, "direction": 20} for s in examples.SURFACES],
     ids=lambda values: values.get("source", "freeform"),
 )
 def test_three_lines_of_python_find_exactly_the_same_net(values):
@@ -556,6 +514,21 @@ def test_a_run_that_was_stopped_before_it_began_makes_no_step():
     assert way == [] and np.array_equal(made.V, surfaces.freeform_patch(4, 4)[0])
 
 
+def test_a_step_that_comes_late_does_not_take_the_place_of_the_end(monkeypatch):
+    made, known = Session(), session.report.report
+    made.change(kind="freeform", m=4, n=4)
+    run = made.begin()
+
+    def late(*args, **wanted):  # the search ends while the step is measured
+        monkeypatch.setattr(session.report, "report", known)
+        made.search(run)
+        return known(*args, **wanted)
+
+    monkeypatch.setattr(session.report, "report", late)
+    assert not made.on_the_way(run, *surfaces.freeform_patch(4, 4))
+    assert made.message.startswith("converged") and made.run is None
+
+
 def test_what_an_older_run_finds_is_forgotten():
     made = built(m=4, n=4)
     former, newer = made.V, []
@@ -578,28 +551,17 @@ def test_what_an_older_run_finds_is_forgotten():
     assert len(made.V) == 30 and made.run is None and made.shown.m == 5
 
 
-def test_a_net_on_the_way_is_shown_with_its_step():
-    made, words = Session(), []
-    made.change(kind="freeform", m=4, n=4)
-    run = made.begin()
-
-    def seen(V, Q, step):
-        assert made.on_the_way(run, V, Q) and made.V is V and made.shown == run.choice
-        words.append(made.message)
-
-    made.search(run, seen)
-    assert words == [f"step {k}" for k in range(len(words))] and len(words) > 1
-    assert made.message.startswith("converged")
-
-
 @pytest.mark.parametrize("former", [True, False])
 def test_what_cannot_be_found_becomes_a_problem_and_the_former_net_stays(former):
     made = built(m=4, n=4) if former else Session()
-    V, message = made.V, made.message
-    made.change(kind="cover", source="file")
+    V, message, said = made.V, made.message, made.report
+    made.change(kind="cover", source="file", theta=20)
     made.search(made.begin())
     assert made.problem.startswith("no net: ") and "file" in made.problem and made.run is None
-    assert made.V is V and made.message == message
+    assert made.V is V and made.message == message and made.report is said
+    if not former:
+        with pytest.raises(ValueError, match="no net"):
+            made.save(".obj")
     made.change(kind="plane")
     made.construct()
     assert made.problem == "" and made.V is not None
@@ -616,9 +578,6 @@ def test_a_constructed_net_ends_the_search_under_way():
     plane = made.V
     made.search(run)
     assert made.V is plane
-
-
-# --- what is said of a net ----------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -649,14 +608,6 @@ def test_the_numbers_agree_with_the_judge_and_with_the_corners(values):
         assert np.allclose(mine, judged, atol=1e-12)
 
 
-def test_the_numbers_belong_to_the_net_that_is_shown_and_not_to_the_choice():
-    made = built(map="inverse", theta=70, m=5, n=5)
-    before = made.report
-    made.change(kind="cover", source="file", theta=20)
-    made.search(made.begin())
-    assert made.problem and made.report is before
-
-
 def test_the_worst_face_is_the_darkest():
     found = built(map="inverse", m=12, n=12)
     worst = np.abs(found.deviations()).max(axis=0)
@@ -664,16 +615,6 @@ def test_the_worst_face_is_the_darkest():
     assert found.colours().shape == (144, 3) and found.colours().dtype == np.uint8
     order = np.argsort(worst)
     assert np.all(np.diff(brightness[order]) <= 0) and brightness[order[0]] > brightness[order[-1]]
-
-
-def test_a_session_without_a_net_says_and_saves_nothing():
-    made = Session()
-    assert made.V is None and made.report is None
-    with pytest.raises(ValueError, match="no net"):
-        made.save(".obj")
-
-
-# --- a net that is given ------------------------------------------------------------------
 
 
 def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles():
@@ -692,30 +633,14 @@ def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles()
     assert made.code().startswith("#")
 
 
-@pytest.mark.parametrize("bad", ["shape", "index", "nan"])
-def test_a_given_net_is_checked(bad):
+def test_a_given_net_is_checked():
     V, Q = surfaces.freeform_patch(3, 3)
-    V, Q = {
-        "shape": (V[:, :2], Q),
-        "index": (V[:-1], Q),
-        "nan": (np.where(np.arange(16)[:, None] == 5, np.nan, V), Q),
-    }[bad]
-    with pytest.raises(ValueError):
-        Session(net=(V, Q))
-
-
-# --- saving -------------------------------------------------------------------------------
+    for W in (V[:, :2], V[:-1], np.where(np.arange(16)[:, None] == 5, np.nan, V), 0 * V):
+        with pytest.raises(ValueError):
+            Session(net=(W, Q))
 
 
 PACKAGES = {".vtp": "pyvista", ".dxf": "ezdxf", ".3dm": "rhino3dm"}
-
-
-def package(suffix):
-    """The package that a kind of file needs; without it the test is skipped."""
-    if suffix in PACKAGES:
-        name = PACKAGES[suffix]
-        return pytest.importorskip(name, reason=f"the package {name} is not installed")
-    return None
 
 
 @pytest.fixture
@@ -735,13 +660,12 @@ def vase():
 
 @pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp", ".glb", ".dxf", ".3dm"])
 def test_saved_nets_are_the_files_that_io_writes(vase, scratch, tmp_path, suffix):
-    package(suffix)
+    pytest.importorskip(PACKAGES.get(suffix, "numpy"), reason="an optional package is missing")
     path, saved = tmp_path / f"net{suffix}", vase.save(suffix)
     io.write(path, vase.V, vase.Q, "all" if suffix in io.WITH_CURVES else None)
     written = path.read_bytes()
-    assert (
-        saved == written if suffix not in (".dxf", ".3dm") else abs(len(saved) - len(written)) < 99
-    )
+    dated = suffix in (".dxf", ".3dm")
+    assert abs(len(saved) - len(written)) < 99 if dated else saved == written
     path.write_bytes(saved)
     if suffix in (".obj", ".ply", ".off", ".vtp"):
         assert all(map(np.array_equal, io.read(path), (vase.V, vase.Q)))
@@ -783,17 +707,12 @@ def test_other_suffixes_are_refused_with_the_known_ones(vase, scratch, suffix):
 
 
 def test_all_formats_are_offered_and_missing_packages_are_named(monkeypatch):
-    assert set(session.SAVED) == {".svg", ".png", ".obj", ".ply", ".off", ".vtp", ".glb"} | {
-        ".dxf",
-        ".3dm",
-    }
+    known = {".svg", ".png", ".obj", ".ply", ".off", ".vtp", ".glb", ".dxf", ".3dm"}
+    assert set(session.SAVED) == known
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     assert {s: session.missing(s) for s in session.SAVED if session.missing(s)} == PACKAGES
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
     assert not any(map(session.missing, session.SAVED))
-
-
-# --- what a net looks like ----------------------------------------------------------------
 
 
 LOOKED = {
@@ -828,13 +747,6 @@ def test_every_edge_is_drawn_once_in_the_family_of_its_polyline(net, families, p
         pieces = [pair for line in lines[name] for pair in pairwise(line)]
         assert edges(plan.lines[name]) == edges(pieces)
     assert tuple(plan.lines) == families
-
-
-@pytest.mark.parametrize("families", [(), ("d2",), ("v", "d1"), FAMILIES])
-def test_only_the_families_that_are_asked_for_are_drawn(families):
-    V, Q = LOOKED["skew patch"]
-    plan = look.layout(Q, len(V), families)
-    assert tuple(plan.lines) == families and all(map(len, plan.lines.values()))
 
 
 @each_net
@@ -914,11 +826,6 @@ def test_every_cell_has_the_colour_of_the_face_it_is_cut_from(families, parallel
     assert np.array_equal(look.fills(plan, look.LIGHT, shade)[:, :2], square)
 
 
-def test_curves_are_thinner_where_there_are_more_quads():
-    widths = [look.line_width(count) for count in (1, 100, 640, 2000, 5000, 20000)]
-    assert all(a >= b > 0 for a, b in pairwise(widths)) and widths[0] > widths[-1]
-
-
 def test_shades_darken_with_the_deviation_between_the_ends_of_the_scale():
     brightness = look.shades(np.logspace(-12, 2, 200)).astype(int).sum(axis=1)
     assert np.all(np.diff(brightness) <= 0)
@@ -937,9 +844,6 @@ def test_the_scale_names_the_deviations_of_its_colours():
     below = look.shades(np.array([values[1] / 10]))[0]
     assert scale[0][0] == "rgb({},{},{})".format(*below)
     assert len({colour for colour, _ in scale}) == len(scale)
-
-
-# --- small drawings -----------------------------------------------------------------------
 
 
 MODERATE = list(product((35, 60, 90, 140), (40, 90, 120)))
@@ -1087,18 +991,15 @@ def test_a_profile_that_is_none_is_drawn_as_dots():
     assert len(list(root.iter(SVG + "circle"))) == 7 and not list(root.iter(SVG + "polyline"))
 
 
+WRITTEN = {0: "0", 0.25: "0.25", -0.25: "\u22120.25", 3e6: "3e6", 2e12: "2e12"}
+WRITTEN |= {4.321e-13: "4.3e\u221213", 1.5e-7: "1.5e\u22127"}
+
+
 @given(st.floats(-1e15, 1e15, allow_subnormal=False), st.integers(1, 3))
-def test_short_numbers_are_short_and_near(x, digits):
+def test_short_numbers_are_short_and_near_and_written_as_on_paper(x, digits):
+    assert {y: plates.short(y) for y in WRITTEN} == WRITTEN
     text = plates.short(x, digits)
     assert "-" not in text and "+" not in text and "e0" not in text
     assert len(text) <= digits + 8
     value = float(text.replace("\u2212", "-"))
     assert value == pytest.approx(x, rel=0.51 * 10.0 ** (1 - digits), abs=1e-300)
-
-
-WRITTEN = {0: "0", 0.25: "0.25", -0.25: "\u22120.25", 3e6: "3e6", 2e12: "2e12"}
-WRITTEN |= {4.321e-13: "4.3e\u221213", 1.5e-7: "1.5e\u22127"}
-
-
-def test_short_numbers_are_written_as_on_paper():
-    assert {x: plates.short(x) for x in WRITTEN} == WRITTEN

@@ -43,9 +43,6 @@ def opengl(pyvista):
         pytest.skip(sentence)
 
 
-# --- without pyvista or OpenGL ------------------------------------------------------------
-
-
 def test_importing_view_imports_neither_pyvista_nor_vtk():
     code = (
         "import sys, inetlib.view as v; sys.exit(any(m[:3] in ('vtk', 'pyv') for m in sys.modules))"
@@ -145,6 +142,8 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     if not kernel:
         monkeypatch.delitem(sys.modules, "ipykernel")
+    shown = explorer.show(m=3, n=1)
+    assert isinstance(shown, explorer.notebook.Live) is (live == "page")
     kinds = {str: "window", explorer.notebook.Live: "page"}
     result, forced, fixed = (explorer.turn(V, Q, live=x) for x in (None, True, False))
     assert kinds.get(type(result), "still") == live
@@ -154,9 +153,6 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
     if live == "page":
         assert result.picture == fixed.data
         np.testing.assert_array_equal([W[0] for W in door.nets.values()], [V, V])
-
-
-# --- with both ----------------------------------------------------------------------------
 
 
 def drawn(*options, **more):

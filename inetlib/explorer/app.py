@@ -58,8 +58,6 @@ class App:
             scene.give_back(self.scene)
             self.scene = None
 
-    # --- what the page does ---------------------------------------------------------------
-
     def _echo(self, problems=()):
         """Show the choice as it is, whatever was typed, and what was wrong."""
         self.state.update(_listed(self.session.choice))
@@ -116,8 +114,6 @@ class App:
             return None
         return self.server.protocol.addAttachment(data)
 
-    # --- the camera -----------------------------------------------------------------------
-
     def look(self, name, aspect=None):
         """See the whole net: "from_above", "from_side", "fit": by default, "refit": as before."""
         self.aspect = float(aspect or self.aspect)
@@ -127,8 +123,6 @@ class App:
         if V is not None and sight is not None:
             self.sight, self.fitted = sight, V
             self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
-
-    # --- keeping in step ------------------------------------------------------------------
 
     def _soon(self, remake):
         """Show the net when the changes that are waiting have come; remake: make it first."""

@@ -20,14 +20,6 @@ DISKS = {  # centre and radius of the disk that the grid fills, if it is not the
 IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
 
 
-class Made(NamedTuple):
-    """A net: V (n, 3), Q (f, 4), and a sentence on it."""
-
-    V: np.ndarray
-    Q: np.ndarray
-    message: str
-
-
 class Recipe(NamedTuple):
     """Three lines of Python with {names} in the place of values, and a sentence on the net.
 
@@ -118,8 +110,8 @@ def _isothermal(name, inverted):
 
 def make(
     choice: Choice, surface: tuple | None = None, callback: Callable = lambda *_: None
-) -> Made:
-    """The net of a choice; ValueError where there is none.
+) -> tuple[np.ndarray, np.ndarray, str]:
+    """V (n, 3), Q (f, 4) of a choice, and a sentence on the net; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
     (step None) and every step, and may return False to end it.
@@ -137,12 +129,12 @@ def make(
     if choice.kind == "freeform":
         V, Q = names["V"], names["Q"]
         if callback(None, V, Q) is False:
-            return Made(V, Q, "stopped before the first step")
+            return V, Q, "stopped before the first step"
         names["callback"] = lambda step, V: callback(step, V, Q)
     net = names["net"] = eval(recipe.net.format_map(words), names)
     exec(recipe.take.format_map(words), names)
     repairs = net.report.repairs if choice.kind == "cover" else ()
-    return Made(names["V"], names["Q"], "; ".join([recipe.message.format(net), *repairs]))
+    return names["V"], names["Q"], "; ".join([recipe.message.format(net), *repairs])
 
 
 def code(choice: Choice, path: object = "surface.obj") -> str:

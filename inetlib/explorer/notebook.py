@@ -7,7 +7,7 @@ import os
 import secrets
 import sys
 import threading
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import PIL.Image
@@ -23,11 +23,12 @@ _lock = threading.Lock()
 _door = None
 
 
-class Live:
+class Live(NamedTuple):
     """A page in a notebook's output, or its picture: the kernel may have ended."""
 
-    def __init__(self, address, picture, height):
-        self.address, self.picture, self.height = address, picture, height
+    address: str
+    picture: bytes
+    height: int
 
     def _repr_mimebundle_(self, include=None, exclude=None):
         data = base64.b64encode(self.picture).decode()

@@ -42,7 +42,7 @@ class Session:
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0)
             words = "a net from Python; deviations are from its mean angles"
-            self._settle(None, None, lambda _: nets.Made(V, Q, words))
+            self._settle(None, None, lambda _: (V, Q, words))
             if self.problem:
                 raise ValueError(self.problem)
 
@@ -70,17 +70,17 @@ class Session:
         """
         choice, problem = run.choice if run else self.choice, ""
         try:
-            made = make(choice, *known)
-            angles = np.radians([choice.theta, choice.theta0])
-            about = report.report(made.V, made.Q, theta=angles[0], theta0=angles[1])
+            V, Q, message = make(choice, *known)
+            theta, theta0 = np.radians([choice.theta, choice.theta0])
+            about = report.report(V, Q, theta=theta, theta0=theta0)
         except (ValueError, ArithmeticError, MemoryError) as error:
-            made, problem = None, f"no net: {error or type(error).__name__}"
+            problem = f"no net: {error or type(error).__name__}"
         with self._lock:
             if run is not self.run:
                 return False
             self.run, self.problem = then, problem
-            if made is not None:
-                self.V, self.Q, self.message = made
+            if not problem:
+                self.V, self.Q, self.message = V, Q, message
                 self.shown, self.report = choice, about
             return True
 
@@ -111,7 +111,7 @@ class Session:
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
         words = f"step {self.steps}"
-        return self._settle(run, run, lambda _: nets.Made(V, Q, words))
+        return self._settle(run, run, lambda _: (V, Q, words))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
