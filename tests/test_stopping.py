@@ -19,7 +19,7 @@ import psutil
 import pytest
 
 import inetlib
-from inetlib import cli, examples, files, io, start
+from inetlib import cli, design, examples, files, io, start
 from inetlib.design import report
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -163,6 +163,12 @@ def test_called_from_a_program_inet_leaves_its_signals_alone(tmp_path, monkeypat
         assert before == [signal.getsignal(number) for number in start.SIGNALS]
         raise KeyboardInterrupt
 
+    with monkeypatch.context() as patch:
+        patch.setattr(report, "survey", stop)  # before the file
+        patch.setattr(design, "survey", stop)
+        assert cli.main(COVER) == 130
+    assert capsys.readouterr() == ("", "inet: stopped, nothing was written\n")
+    assert os.listdir(tmp_path) == []
     monkeypatch.setattr(report, "numbers", stop)  # after the file
     assert cli.main(COVER) == 130
     assert capsys.readouterr() == ("", "inet: stopped\n")
