@@ -54,7 +54,7 @@ def check_whole(name: str, value: float, least: int = 1) -> int:
     return int(value)
 
 
-def _area_factors(lam, mu):
+def area_factors(lam: Number, mu: Number) -> tuple:
     """Four factors with the product (2 (1 + mu^2) lam sin theta)^2, positive inside Eq. (4).
 
     As in Heron's formula the product keeps its digits where 1 - cos^2 theta loses them.
@@ -69,7 +69,7 @@ def _area_factors(lam, mu):
 
 def _root_area(lam, mu):
     """2 (1 + mu^2) lam sin theta = 2 (1 + lam^2) mu sin theta0."""
-    w1, w2, w3, w4 = _area_factors(lam, mu)
+    w1, w2, w3, w4 = area_factors(lam, mu)
     xp = library(lam, mu)
     if xp is np:  # root by root: the product overflows first
         return np.sqrt(w1) * np.sqrt(w2) * np.sqrt(w3) * np.sqrt(w4)
@@ -93,7 +93,7 @@ def is_admissible(lam: Number, mu: Number) -> bool | np.ndarray:
     """Whether a parallelogram exists; on the border it collapses.  Paper: Eq. (4), Lemma 1."""
     lam, mu = np.asarray(lam, dtype=float), np.asarray(mu, dtype=float)
     with np.errstate(invalid="ignore", over="ignore"):
-        inside = np.all([w > 0 for w in _area_factors(lam, mu)], axis=0)
+        inside = np.all([w > 0 for w in area_factors(lam, mu)], axis=0)
         inside &= (lam > 0) & (mu > 0) & np.isfinite(lam) & np.isfinite(mu)
     return bool(inside) if inside.ndim == 0 else inside
 

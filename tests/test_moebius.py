@@ -40,7 +40,10 @@ def test_two_inversions_about_one_centre_scale(centre, one, two):
     M = moebius.inversion(centre, two) @ moebius.inversion(centre, one)
     wanted = centre + (two / one) ** 2 * (V - centre)
     np.testing.assert_allclose(moebius.apply(M, V), wanted, rtol=1e-8, atol=1e-8)
-    assert moebius.pole(M) is None
+
+
+def test_a_similarity_has_no_pole():
+    assert moebius.pole(moebius.inversion(radius=2) @ moebius.inversion(radius=1)) is None
 
 
 def test_the_sphere_of_inversion_stays_and_its_inside_goes_out():
