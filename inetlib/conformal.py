@@ -101,7 +101,6 @@ def square_conic(point: Number, direction: Number) -> tuple[Number, ...]:
     """(A, B, C, D, E, F) of the parabola onto which z^2 takes a line; B^2 = 4 A C.
 
     A u^2 + B u v + C v^2 + D u + E v + F = 0 in w = u + iv; a doubled ray where the line meets 0.
-
     Paper: App. A.2.
     """
     a, b, h = _line(point, direction)

@@ -119,9 +119,7 @@ def roll(z: np.ndarray, curvature: float, direction: complex = 1) -> np.ndarray:
     """A planar net rolled onto a rotational cylinder of radius 1 / |curvature|: (..., 3).
 
     direction: across the rulings, its length ignored.  The ruling through 0 stays where it is,
-    a negative curvature bends down, and a width of 2 pi / curvature closes.
-
-    Paper: Fig. 7.
+    a negative curvature bends down, and a width of 2 pi / curvature closes.  Paper: Fig. 7.
     """
     z, along = _complex(z), unit(direction)
     if not np.isfinite(curvature):
@@ -148,7 +146,6 @@ def cone(z: np.ndarray, gamma: float, apex: complex = 0, direction: complex = 1)
     gamma: radians in (0, pi), between the rulings and the upward axis: pi/2 is the plane, less
     opens upwards; direction: of the ruling that keeps its vertical plane.  The sheet is slit
     opposite to it; with an angle of 2 pi sin(gamma) around the apex, the largest, it closes.
-
     Paper: Fig. 7.
     """
     z, along, gamma = _complex(z), unit(direction), check_angle("gamma", gamma)
@@ -202,9 +199,7 @@ def rectifying(z: np.ndarray, curve: Curve) -> np.ndarray:
     The ruling at arc length s makes the angle psi(s) with the x-axis, so the point (x, y) lies
     on the one with x - s = y cot psi(s); y > 0 is the side of the binormal.  ValueError names
     the first point behind the edge of regression or beyond the last ruling, and a place where
-    the curvature vanishes.
-
-    Paper: Fig. 7.
+    the curvature vanishes.  Paper: Fig. 7.
     """
     z = _complex(z)
     _require_rulings(curve)

@@ -56,9 +56,7 @@ SURFACES = {"roof": wavy_roof, "saddle": saddle_with_hole, "shell": hanging_shel
 def vertex(valence: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A vertex of any valence >= 3 in `rings` rings of quads: (V, Q), vertex 0 is the middle.
 
-    V: z = 0, images of square lattices under z^(4/valence).  Q: oriented, not labelled.
-
-    Paper: B9.
+    V: z = 0, images of square lattices under z^(4/valence).  Q: oriented, not labelled.  Paper: B9.
     """
     valence, rings = check_whole("valence", valence, 3), check_whole("rings", rings)
     i, j = (x.ravel() for x in np.mgrid[1 : rings + 1, : rings + 1])  # the axis i = 0 is the next
@@ -75,9 +73,7 @@ def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A polygon whose corners have valence 3, in `rings` rings of `sides` quads: (V, Q, polygon).
 
     u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0, the radii in a
-    geometric series that makes the faces nearly square (from 12 sides on).
-
-    Paper: B9.
+    geometric series that makes the faces nearly square (from 12 sides on).  Paper: B9.
     """
     sides, rings = check_whole("sides", sides, 3), check_whole("rings", rings)
     around, step = 2 * np.pi / sides * np.arange(sides), min(2 * np.pi / sides, 0.5)
@@ -94,7 +90,6 @@ def moebius_strip(
     """A strip of length x width quads, closed with half a twist: (V, Q), `width` rows.
 
     The middle curve is the unit circle, reach is half the width.  No orientation exists.
-
     Paper: B9.
     """
     length, width = check_whole("length", length, 5), check_whole("width", width)
@@ -116,9 +111,7 @@ def seam(Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(faces (f, 4), edges (k, 2)): Q with u and v named from face to face, and where they clash.
 
     The names start at face 0 and spread breadth first; the mesh can be labelled exactly when
-    there is no edge across which they disagree.
-
-    Paper: B9.
+    there is no edge across which they disagree.  Paper: B9.
     """
     Q = mesh.check_quads(Q).copy()
     start, end = Q.ravel(), np.roll(Q, -1, axis=1).ravel()

@@ -46,7 +46,6 @@ def loxodrome(profile: Profile, theta0: float, angle: float = 0, samples: int = 
 
     From profile.start at the given angle around the axis (radians) to profile.stop: alpha =
     angle + cot theta0 * w, evenly spaced in the Mercator coordinate w = int ds / radius.
-
     Paper: Eq. (15).
     """
     theta0 = _angle("theta0", theta0)
@@ -76,7 +75,6 @@ def web(
            "smooth"  points of the smooth web, in closed form; angles off by O(1 / m^2)
            "paper"   the published algorithm, on the smooth loxodromes, with its own equation
                      for the next parallel, equation = "lam"; or the better "mu"
-
     Paper: Alg. 1, Eq. (16), App. A.3, B4, B5.
     """
     check_profile(profile)
@@ -171,7 +169,6 @@ def residual(
     equation "lam": log(|A-D| / (lam |B-C|)), "mu": log(|m13| / (mu |m24|)), both between points
     of the smooth loxodromes; "exact": |m13|^2 - mu^2 |m24|^2 with the turn that makes the
     medial lines meet at theta0.  Draw it to see the two roots of "lam".
-
     Paper: Eq. (16), Alg. 1, App. A.3.
     """
     if equation == "exact":
@@ -314,9 +311,7 @@ def subnet(net: Net, first: str, second: str, mirror: bool = False) -> tuple:
     first, second: two of "u", "v", "d1", "d2"; the quads' u-edges follow `first`, their
     v-edges `second`.  ("d1", "d2") takes every other vertex and so needs an even m.
     mirror=True reflects the net in the meridian plane y = 0: theta stays and theta0 becomes
-    its supplement.  V keeps the vertices of the net, used or not.
-
-    Paper: Fig. 11.
+    its supplement.  V keeps the vertices of the net, used or not.  Paper: Fig. 11.
     """
     if first == second or not {first, second} <= set(AROUND):
         raise ValueError(f"{first!r}, {second!r}: two of u, v, d1, d2 are wanted")
@@ -356,9 +351,7 @@ def closings(
     m and n go up to `limit`; at most `count` are listed, nearest by the larger deviation of
     the two angles, of equals that with the smaller m.  The smooth web closes with a shift of k
     quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where W = 2 pi minor /
-    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.
-
-    Paper: B4.
+    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.  Paper: B4.
     """
     wide = _torus_width(major, minor)
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
@@ -385,9 +378,7 @@ def torus_web(major: float, minor: float, m: int, n: int, shift: int) -> Net:
 
     n rows of m quads; going once around the tube every loxodrome ends `shift` quads further
     around the axis.  All quads have the same two angles, net.theta and net.theta0, near those
-    of the smooth web (see `closings`).  ValueError when no closed web is found.
-
-    Paper: B4.
+    of the smooth web (see `closings`).  ValueError when no closed web is found.  Paper: B4.
     """
     wide = _torus_width(major, minor)
     m, n = check_whole("m", m, 3), check_whole("n", n, 3)

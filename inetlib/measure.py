@@ -104,7 +104,6 @@ def star_angles(V: ArrayLike, Q: ArrayLike, unit: bool = False) -> Star:
 
     theta0 lies between the chords right - left and up - down, theta between those of the face
     corners opposite to the vertex; unit=True: chords of the unit vectors to these points.
-
     Paper: Thm 12.
     """
     V, Q = mesh.check_arrays(V, Q)

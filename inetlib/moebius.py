@@ -63,7 +63,6 @@ def apply(M: np.ndarray, V: np.ndarray) -> np.ndarray:
     """The images (..., 3) of the points V (..., 3) under the 5 x 5 Lorentz matrix M.
 
     ValueError for a matrix that is not Lorentz, and for a vertex that goes to infinity.
-
     Paper: Fig. 9.
     """
     M, X = check(M), lift(V)
@@ -86,9 +85,7 @@ def image(M: np.ndarray, surface: Surface) -> Surface:
     """The image of a whole `surfaces.Surface` under M, again a Surface; numbers only.
 
     An isothermal parametrisation stays isothermal.  Points that go to infinity are an
-    error when they are asked for.
-
-    Paper: Fig. 9.
+    error when they are asked for.  Paper: Fig. 9.
     """
     M = check(M)
 
@@ -102,7 +99,6 @@ def stereographic(V: np.ndarray) -> np.ndarray:
     """The points V (..., 3) of the unit sphere, seen from (0, 0, 1) in the plane z = 0: complex.
 
     ValueError for a vertex off the sphere by more than 1e-9 and for the north pole itself.
-
     Paper: Fig. 10.
     """
     x, y, z = np.moveaxis(_points(V), -1, 0)

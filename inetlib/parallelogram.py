@@ -138,7 +138,6 @@ def cosines(lam: Number, mu: Number) -> tuple[Number, Number]:
     """(cos theta, cos theta0), rational in the ratios.
 
     An arccos of these loses half the digits near 0 and pi: see `angles`.
-
     Paper: Eq. (3), Eq. (8), Lemma 1, Def. 10.
     """
     lam, mu = _require_admissible(lam, mu)
@@ -222,7 +221,6 @@ def diagonal_ratio(rho: Number) -> Number:
     """Y_v / Y_u = (1 + rho) / (1 - rho) = lam exp(i theta); ValueError for rho = 1.
 
     An involution between s = Y_v / Y_u and r = 1 / rho: s = (r + 1) / (r - 1).
-
     Paper: Thm 7 in complex form, B2.
     """
     if library(rho) is np:

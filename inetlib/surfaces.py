@@ -280,9 +280,7 @@ def mercator(profile: Profile) -> tuple[Callable, Callable]:
 
     w(t) = int ds / radius from profile.start; both take arrays, and t_of_w stays on the
     profile.  (angle, w) is isothermal on the surface of revolution.  About 1e-12 for smooth
-    callables, 1e-9 for cubic splines.  ValueError as in `check_profile`.
-
-    Paper: B4.
+    callables, 1e-9 for cubic splines.  ValueError as in `check_profile`.  Paper: B4.
     """
     check_profile(profile)
 
@@ -348,9 +346,7 @@ def freeform_patch(m: int = 20, n: int = 20) -> tuple[np.ndarray, np.ndarray]:
     """A roof with a dome, a saddle and curved boundaries as a mesh (V, Q), m x n quads.
 
     V: ((m+1)(n+1), 3), its bounding box has the diagonal 1 and its centre at 0; Q as in
-    `mesh.grid_quads`.  Every isogonal net on it has to be found.
-
-    Paper: Fig. 12.
+    `mesh.grid_quads`.  Every isogonal net on it has to be found.  Paper: Fig. 12.
     """
     Q = grid_quads(m, n)
     u, v = np.meshgrid(np.linspace(-1, 1, m + 1), np.linspace(-1, 1, n + 1), indexing="ij")

@@ -21,10 +21,7 @@ SOFT = 0.03  # weight of the boundary
 
 
 def curves(m=CELLS):
-    """The vertices that stay, {panel: numbers}, in a grid of m x m quads.
-
-    Paper: B8.
-    """
+    """The vertices that stay, {panel: numbers}, in a grid of m x m quads.  Paper: B8."""
     index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
     rim = mesh.boundary_loops(mesh.grid_quads(m, m))[0]
     none = index[0, :0]
@@ -35,9 +32,7 @@ def curves(m=CELLS):
 def vault(m=CELLS):
     """A roof that a half turn about the vertical axis takes to itself: (V, Q), m x m quads.
 
-    Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.
-
-    Paper: B8.
+    Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.  Paper: B8.
     """
     u, v = np.meshgrid(*2 * [np.linspace(-1, 1, m + 1)], indexing="ij")
     x, y = 1.1 * u + 0.3 * v, v - 0.15 * u + 0.1 * u**3
@@ -50,9 +45,7 @@ def nets(theta=75 * DEGREE, theta0=75 * DEGREE, m=CELLS):
     """The starts and what became of them: {panel: (V, Q, `solver.Result`)}.
 
     A, B, C, F: the freeform roof with the vertices of `curves` fixed; D: with a heavy weight
-    of the boundary; E: `vault`, without a reference surface.  theta, theta0: radians.
-
-    Paper: B8.
+    of the boundary; E: `vault`, without a reference surface.  theta, theta0: radians.  Paper: B8.
     """
     found = {}
     for letter, stay in curves(m).items():
@@ -70,9 +63,7 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=
 
     theta, theta0: radians; azimuth, elevation: the camera, radians.  Black: the vertices
     that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
-    of their deviation.
-
-    Paper: B8.
+    of their deviation.  Paper: B8.
     """
     figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
     view = plot.camera(azimuth, elevation)

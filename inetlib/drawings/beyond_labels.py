@@ -17,9 +17,7 @@ def gallery():
     """The small meshes, {panel: (words, V, Q, polygon or None)}, not yet labelled.
 
     A: polygons of 3 to 8 sides with corners of valence 4; B: vertices of valence 3 to 8; C:
-    polar caps of 3, 5 and 7 sides, closed strips with 3 and 4 turns, a Moebius strip.
-
-    Paper: B9.
+    polar caps of 3, 5 and 7 sides, closed strips with 3 and 4 turns, a Moebius strip.  Paper: B9.
     """
     found = {}
     for k in range(6):
@@ -52,9 +50,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
     """Two nets in space: {"D": (V, Q, polygon, `solver.Result`), "E"}; V is the start.
 
     D: an octagon with corners of valence 4 in six rings; E: a polar cap of 20 sides.  Both
-    start from domes.  theta, theta0: radians.
-
-    Paper: B9.
+    start from domes.  theta, theta0: radians.  Paper: B9.
     """
     meshes = {"D": mesh.polygon_rings(8, 6), "E": examples.polar_cap(20, 7)}
     found = {}
@@ -71,9 +67,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
 
     theta, theta0: radians, of the nets; azimuth, elevation: the camera, radians.  Edges have
     the colours of u and v; where a mesh is refused, the names spread from one face until they
-    meet in disagreement along the dotted edges.
-
-    Paper: B9.
+    meet in disagreement along the dotted edges.  Paper: B9.
     """
     figure, axes = plot.canvas(MOSAIC, 7.4, 7.2)
     data, exact, claims = {}, [], {}

@@ -29,7 +29,6 @@ def draw(rho=0.95 + 1.15j):
     rho: complex, in the upper half plane, else ValueError.  (A) the circles of mu and lam, the
     rays of theta0 and the arcs of theta; bold those through rho.  (B) the quad of rho with its
     parallelogram.  (C) its four directions, a harmonic pencil, and the gaps between them.
-
     Paper: B2, B10.
     """
     shape = parallelogram.from_rho(rho)
@@ -59,10 +58,7 @@ def explore(theta=60, theta0=45):
 
 
 def special():
-    """The special points rho, complex, in the order of their list.
-
-    Paper: B2, B10.
-    """
+    """The special points rho, complex, in the order of their list.  Paper: B2, B10."""
     theta, theta0 = np.transpose(list(SPECIAL)) * DEGREE
     return parallelogram.rho(*parallelogram.ratios(theta, theta0))
 
@@ -149,10 +145,7 @@ def quad(ax, rho):
 
 
 def web(ax, rho):
-    """The four lines of the pencil with their names, and the four gaps in degrees.
-
-    Paper: B10.
-    """
+    """The four lines of the pencil with their names, and the four gaps in degrees.  Paper: B10."""
     lines = np.array(parallelogram.directions(rho))
     lines = lines / np.abs(lines) * np.where(lines.imag < 0, -1, 1)
     names = {"u": "$X_u$", "d2": "$Y_v$", "v": "$X_v$", "d1": "$Y_u$"}

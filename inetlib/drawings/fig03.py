@@ -21,7 +21,6 @@ def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
 
     theta, theta0: radians, the angles of the grid A; theta1 and theta2: both angles of the
     grids B and C; cells: the patterns C1 to C3 have cells x cells quads, an even number.
-
     Paper: Fig. 3.
     """
     figure, axes = plot.canvas(MOSAIC, 7.2, 6.6)

@@ -34,7 +34,6 @@ def draw(
 
     theta, theta0: angles of the web; lines, cells: steps of the smooth web (even) and of the
     mesh (odd); size: of the parameter square; azimuth, elevation: the camera; radians.
-
     Paper: Fig. 5.
     """
     asked = theta, theta0

@@ -49,7 +49,6 @@ def rows(variants):
     """The lines of the table as lists of strings; variants: {name: its `results`}.
 
     Deviations are degrees from the wanted (or found) angles, over all faces.
-
     Paper: Table 1, App. A.4.
     """
     lines = []
@@ -76,19 +75,13 @@ def _row(Q, found):
 
 
 def markdown(lines):
-    """The table as Markdown text.
-
-    Paper: Table 1.
-    """
+    """The table as Markdown text.  Paper: Table 1."""
     table = [HEADER, ["---"] * len(HEADER), *lines]
     return "".join(f"| {' | '.join(line)} |\n" for line in table)
 
 
 def save(lines, folder):
-    """Write folder/table1.md and folder/table1.csv.
-
-    Paper: Table 1.
-    """
+    """Write folder/table1.md and folder/table1.csv.  Paper: Table 1."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows([HEADER, *lines])
     publish.save_text(markdown(lines), f"{folder}/table1.md")

@@ -35,9 +35,7 @@ def jacobian(V: np.ndarray, Q: np.ndarray) -> csr_array:
     """The derivative of (log lam, log mu) of all faces by all coordinates: (2 f, 3 n), sparse.
 
     V: (n, 3), Q: (f, 4), labelled.  Row 2 k belongs to lam of face k, row 2 k + 1 to mu;
-    column 3 i + c to the coordinate c of vertex i.
-
-    Paper: B8.
+    column 3 i + c to the coordinate c of vertex i.  Paper: B8.
     """
     V, Q = mesh.check_arrays(V, Q)
     _, blocks = residuals.log_ratios(V[Q].reshape(-1, 12))
@@ -50,9 +48,7 @@ def count(
     """The `Freedom` of the net (V, Q) when the vertices `fixed` (numbers or mask) stay.
 
     A singular value below `tolerance` of the largest counts as 0.  ValueError for meshes of
-    more than 1200 faces: the decomposition is dense.
-
-    Paper: B8.
+    more than 1200 faces: the decomposition is dense.  Paper: B8.
     """
     if len(Q) > LARGEST:
         raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")

@@ -100,9 +100,7 @@ def logs(goal: Goal, s: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
 
     "angles" has no freedom; "theta" and "mu" have s = (log lam), "theta0" and "lam" (log mu),
     "equal" the common logarithm, "free" both.  By Lemma 1 tanh(log mu) = cos theta /
-    cosh(log lam), and the same with the names exchanged.
-
-    Paper: Lemma 1.
+    cosh(log lam), and the same with the names exchanged.  Paper: Lemma 1.
     """
     s = np.asarray(s, dtype=float)
     if goal.kind == "angles":

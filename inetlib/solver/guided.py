@@ -34,10 +34,7 @@ class Layout(NamedTuple):
 
 
 def layout(Q: np.ndarray, count: int, theta_mode: bool) -> Layout:
-    """The `Layout` of a mesh of `count` vertices.
-
-    Paper: Eq. (17), Eq. (18), Eq. (21), Table 1.
-    """
+    """The `Layout` of a mesh of `count` vertices.  Paper: Eq. (17), Eq. (18), Eq. (21), Table 1."""
     F, start = len(Q), 3 * count
     names = ["La", "Lb"] if theta_mode else ["La", "Lb", "Lp", "Lq", "c1", "c2"]
     at = {name: np.arange(start + k * F, start + (k + 1) * F) for k, name in enumerate(names)}
@@ -106,10 +103,7 @@ def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple
 
 
 def size(Q: np.ndarray, count: int, goal: Goal) -> tuple[int, int]:
-    """(#var, #cons) of the formulation on a mesh, by the formulas above.
-
-    Paper: Table 1.
-    """
+    """(#var, #cons) of the formulation on a mesh, by the formulas above.  Paper: Table 1."""
     lay = layout(Q, count, goal.equal)
     return lay.columns, hard(lay, goal, np.ones(lay.columns))[0].size
 
@@ -129,7 +123,6 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
 
     x holds lengths in units of the diagonal of the bounding box, as the paper scales its
     meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
-
     Paper: Table 1.
     """
     given, V, lay = log.given, log.given.V, None

@@ -34,9 +34,7 @@ def logarithms(d1: np.ndarray, d2: np.ndarray, p: np.ndarray, q: np.ndarray) -> 
     """log |d2| / |d1| and log |p| / |q|, (2, ...), and their gradients (2, 2, 3, ...).
 
     d1, d2, p = d1 + d2 = 2 m13, q = d2 - d1 = 2 m24: (3, ...).  The gradients are those in
-    -d1 and d2 (first axis) of log lam and log mu (second).
-
-    Paper: Eq. (11), Eq. (12).
+    -d1 and d2 (first axis) of log lam and log mu (second).  Paper: Eq. (11), Eq. (12).
     """
     s1, s2, sp, sq = (np.einsum("x...,x...->...", a, a) for a in (d1, d2, p, q))
     found = 0.5 * np.log(np.stack([s2 / s1, sp / sq]))
@@ -51,7 +49,6 @@ def log_ratios(x: np.ndarray) -> Local:
     """(log lam, log mu) of the faces: logarithms of |d2| / |d1| and |m13| / |m24|.
 
     x: (f, 12).  Free of scale; subtract the wanted logarithms to get a residual.
-
     Paper: Eq. (11), Eq. (12).
     """
     found, (one, two) = logarithms(*np.moveaxis(_vectors(x, [0, 1, 2, 3]), 2, 1))
@@ -64,9 +61,7 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None
 
     x: (f, 12); sizes (f, 2) are numbers without derivatives, |d1| |d2| and |m13| |m24| if
     None.  Then the derivatives are those of `log_ratios` at a solution, while the residual
-    stays a polynomial and does not explode where an edge collapses.
-
-    Paper: Eq. (11), Eq. (12).
+    stays a polynomial and does not explode where an edge collapses.  Paper: Eq. (11), Eq. (12).
     """
     d1, d2, p, q = vectors = _vectors(x, [0, 1, 2, 3])
     vectors[2:] /= 2
@@ -83,18 +78,12 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None
 
 
 def squared_diagonals(x: np.ndarray) -> Local:
-    """d1^2 - La and d2^2 - Lb; x: corners, La, Lb (f, 14).
-
-    Paper: Eq. (17).
-    """
+    """d1^2 - La and d2^2 - Lb; x: corners, La, Lb (f, 14).  Paper: Eq. (17)."""
     return _squared(x, [0, 1])
 
 
 def squared_medials(x: np.ndarray) -> Local:
-    """(2 m13)^2 - Lp and (2 m24)^2 - Lq; x: corners, Lp, Lq (f, 14).
-
-    Paper: Eq. (18).
-    """
+    """(2 m13)^2 - Lp and (2 m24)^2 - Lq; x: corners, Lp, Lq (f, 14).  Paper: Eq. (18)."""
     return _squared(x, [2, 3])
 
 
@@ -117,10 +106,7 @@ def proportional(x: np.ndarray) -> Local:
 
 
 def square_root(x: np.ndarray) -> Local:
-    """lam^2 - c1, or mu^2 - c2; x: (ratio, its square), (f, 2).
-
-    Paper: Eq. (17), Eq. (18).
-    """
+    """lam^2 - c1, or mu^2 - c2; x: (ratio, its square), (f, 2).  Paper: Eq. (17), Eq. (18)."""
     root, square = x.T
     return (root**2 - square)[:, None], np.stack([2 * root, -np.ones_like(root)], 1)[:, None]
 
@@ -136,9 +122,7 @@ def given(x: np.ndarray, value: float) -> Local:
 def given_angle(x: np.ndarray, angle: float) -> Local:
     """(1 + c1)(c2 - 1) - 2 cos theta lam (1 + c2); x: (lam, c1, c2), (f, 3).
 
-    The same function of (mu, c2, c1) and theta0.
-
-    Paper: Eq. (20).
+    The same function of (mu, c2, c1) and theta0.  Paper: Eq. (20).
     """
     ratio, c1, c2 = x.T
     k = 2 * np.cos(angle)

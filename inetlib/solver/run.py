@@ -62,10 +62,7 @@ class Step(NamedTuple):
 
 @contextmanager
 def timed(seconds: dict, name: str) -> Iterator[None]:
-    """Add the seconds that the block takes to seconds[name].
-
-    Paper: Table 1 (seconds).
-    """
+    """Add the seconds that the block takes to seconds[name].  Paper: Table 1 (seconds)."""
     start = time.perf_counter()
     yield
     seconds[name] = seconds.get(name, 0.0) + time.perf_counter() - start
@@ -102,9 +99,7 @@ def equations(
 
     Zero residual: log lam and log mu of every face are those of the goal at the freedom s;
     the Jacobian is in V and minus `slopes` in s.  Of a quadratic problem they are
-    `residuals.scaled_ratios`.
-
-    Paper: Eq. (11), Eq. (12).
+    `residuals.scaled_ratios`.  Paper: Eq. (11), Eq. (12).
     """
     wanted, slopes = logs(goal, s)
     x = V[problem.Q].reshape(-1, 12)

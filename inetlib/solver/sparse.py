@@ -160,7 +160,6 @@ def equations(P: np.ndarray, log_lam: float, log_mu: float) -> tuple[np.ndarray,
     """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the gradients.
 
     f (2, m, n), A (2, 2, 3, m, n) as in `residuals.logarithms`: for the faces of a grid.
-
     Paper: Eq. (11), Eq. (12).
     """
     d1, d2 = P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1]
