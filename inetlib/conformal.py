@@ -46,7 +46,7 @@ def sheared_grid(
     exactly, at any size of the cells; the grid itself up to O(edge^2).  Paper: App. A.2, B3, B6.
     """
     shape = rho(*ratios(theta, theta0))
-    m, n = mesh.check_counts(m, n)
+    m, n = check_whole("m", m), check_whole("n", n)
     u = check_positive("edge", edge) * unit(direction)
     half = np.sqrt(complex(kappa)) / 2
     v = np.arctanh(shape * np.tanh(half * u)) / half if kappa else shape * u

@@ -25,18 +25,13 @@ from . import ties
 from .parallelogram import check_whole
 
 
-def check_counts(m: int, n: int) -> tuple[int, int]:
-    """The numbers of quads along u and v as ints, or a ValueError."""
-    return check_whole("m", m), check_whole("n", n)
-
-
 def grid_quads(m: int, n: int) -> np.ndarray:
     """Quads (m n, 4) of a grid of (m+1)(n+1) vertices, vertex (i, j) numbered i (n+1) + j.
 
     >>> grid_quads(2, 1).tolist()
     [[1, 0, 2, 3], [3, 2, 4, 5]]
     """
-    m, n = check_counts(m, n)
+    m, n = check_whole("m", m), check_whole("n", n)
     i, j = np.meshgrid(np.arange(m), np.arange(n), indexing="ij")
     v2 = (i * (n + 1) + j).ravel()
     return np.stack([v2 + 1, v2, v2 + n + 1, v2 + n + 2], axis=1)

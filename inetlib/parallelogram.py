@@ -59,12 +59,8 @@ def area_factors(lam: Number, mu: Number) -> tuple:
 
     As in Heron's formula the product keeps its digits where 1 - cos^2 theta loses them.
     """
-    return (
-        (lam + 1) + mu * (lam - 1),
-        (lam + 1) - mu * (lam - 1),
-        mu * (lam + 1) + (lam - 1),
-        mu * (lam + 1) - (lam - 1),
-    )
+    more, less = lam + 1, lam - 1
+    return more + mu * less, more - mu * less, mu * more + less, mu * more - less
 
 
 def _root_area(lam, mu):
@@ -108,11 +104,8 @@ def _require_admissible(lam, mu):
         x, y = (np.broadcast_to(ratio, bad.shape)[bad][0] for ratio in (lam, mu))
         if not (0 < x < np.inf and 0 < y < np.inf):
             raise ValueError(f"lam = {x:.6g}, mu = {y:.6g}: both must be positive and finite")
-        low, high = lam_range(y)
-        raise ValueError(
-            f"lam = {x:.6g} at mu = {y:.6g} is no parallelogram: "
-            f"lam must lie between {low:.6g} and {high:.6g} (Eq. 4)"
-        )
+        wanted = "lam must lie between {:.6g} and {:.6g} (Eq. 4)".format(*lam_range(y))
+        raise ValueError(f"lam = {x:.6g} at mu = {y:.6g} is no parallelogram: {wanted}")
     return lam[()], mu[()]
 
 
@@ -234,9 +227,7 @@ def from_rho(rho: Number) -> Shape:
     """The `Shape` of rho in the upper half plane, else ValueError.  Paper: Lemma 1, B2."""
     rho = np.asarray(rho, dtype=complex)[()]
     if not np.all((rho.imag > 0) & np.isfinite(rho)):
-        raise ValueError(
-            "rho must be finite, in the upper half plane: Im rho = sin(theta0) / mu > 0"
-        )
+        raise ValueError("rho must be finite, in the upper half plane (Im rho > 0)")
     diagonal = diagonal_ratio(rho)
     return Shape(abs(diagonal), 1 / abs(rho), np.angle(diagonal), np.angle(rho))
 
