@@ -64,10 +64,8 @@ def bezier(points: ArrayLike) -> Callable:
 
     control = np.asarray(points, dtype=float)
     if control.ndim != 2 or len(control) < 2 or control.shape[1] not in (2, 3):
-        raise ValueError(
-            f"points has the shape {control.shape}: at least two control points of two or "
-            "three coordinates are wanted"
-        )
+        words = "at least two control points of two or three coordinates are wanted"
+        raise ValueError(f"points has the shape {control.shape}: {words}")
     if not np.isfinite(control).all():
         raise ValueError("a control point has a coordinate that is not a finite number")
     curve = BPoly(control[:, None], [0.0, 1.0])
@@ -155,10 +153,8 @@ def cone(z: np.ndarray, gamma: float, apex: complex = 0, direction: complex = 1)
     angle = np.angle(w)
     span, room = np.ptp(angle), 2 * np.pi * np.sin(gamma)
     if span > room * (1 + 1e-12):
-        raise ValueError(
-            f"the net spans {span:.6g} radians around the apex, but the cone has room for "
-            f"2 pi sin(gamma) = {room:.6g} only: it would overlap itself"
-        )
+        words = f"the cone has room for 2 pi sin(gamma) = {room:.6g} only: it would overlap itself"
+        raise ValueError(f"the net spans {span:.6g} radians around the apex, but {words}")
     x, y, height = cone_coordinates(np.abs(w), angle, gamma)
     return _space((x + 1j * y) * along + apex, height)
 
@@ -320,10 +316,8 @@ def _complex(z):
     if z.dtype.kind in "iuf" and z.ndim and z.shape[-1] == 2:
         z = z[..., 0] + 1j * z[..., 1]
     if z.dtype.kind != "c" or z.size == 0:
-        raise ValueError(
-            f"z has the shape {z.shape} and type {z.dtype}: complex numbers or real points "
-            "(..., 2) of the plane are wanted, at least one"
-        )
+        words = "complex numbers or real points (..., 2) of the plane are wanted, at least one"
+        raise ValueError(f"z has the shape {z.shape} and type {z.dtype}: {words}")
     _require(np.isfinite(z), lambda at: "is not a finite number")
     return z
 
@@ -355,6 +349,5 @@ def _require_rulings(curve):
     good[1:] &= np.sum(b[1:] * b[:-1], axis=-1) > 0
     if not good.all():
         s = curve.integral(t[np.argmin(good)])
-        raise ValueError(
-            f"the curvature vanishes near arc length {s:.6g}: the surface has no ruling there"
-        )
+        words = "the surface has no ruling there"
+        raise ValueError(f"the curvature vanishes near arc length {s:.6g}: {words}")

@@ -82,8 +82,12 @@ def web(
     m = check_whole("m", m, 3)
     n = None if n is None else check_whole("n", n)
     _check_size(profile, theta, theta0, m, n)
-    if method == "smooth":
-        t, turn, why = _smooth_rings(profile, theta, theta0, m, n)
+    if method == "smooth":  # equal steps of the Mercator coordinate
+        w_of_t, t_of_w = mercator(profile)
+        step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
+        fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
+        w = step * np.arange(1 + (fit if n is None else min(n, fit)))
+        t, turn, why = t_of_w(w), w / np.tan(theta0), ENOUGH if len(w) - 1 == n else _ended(profile)
     elif method == "exact":
         t, turn, why = _march(profile, n, *_exact_ring(profile, theta, theta0, m)[:2])
     elif method == "paper":
@@ -127,16 +131,6 @@ def _check_size(profile, theta, theta0, m, n):
 
 def _ended(profile):
     return f"a further one does not fit: the meridian ends at t = {profile.stop:.6g}"
-
-
-def _smooth_rings(profile, theta, theta0, m, n):
-    """(t, turns, why) as from `_march`, by equal steps of the Mercator coordinate."""
-    w_of_t, t_of_w = mercator(profile)
-    step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
-    fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
-    rows = fit if n is None else min(n, fit)
-    w = step * np.arange(rows + 1)
-    return t_of_w(w), w / np.tan(theta0), ENOUGH if rows == n else _ended(profile)
 
 
 def _march(profile, n, following, turn):

@@ -52,10 +52,8 @@ def check(M: np.ndarray) -> np.ndarray:
         raise ValueError(f"M has the shape {M.shape}: a 5 x 5 matrix of finite numbers is wanted")
     off = np.abs(M.T @ LORENTZ @ M - LORENTZ).max()
     if off > 1e-9 * max(1, np.abs(M).max() ** 2):
-        raise ValueError(
-            f"M is no Lorentz matrix (M^T J M differs from J by {off:.3g}): "
-            "multiply matrices of inversion"
-        )
+        words = "multiply matrices of inversion"
+        raise ValueError(f"M is no Lorentz matrix (M^T J M differs from J by {off:.3g}): {words}")
     return M
 
 

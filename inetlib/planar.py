@@ -62,12 +62,17 @@ def planar_net(
     net passes through and for nets that collapse.  Paper: B7.
     """
     K = factor_k(theta, theta0)
-    Q, count = _check_mesh(Q)
-    held, places = _read_handles(handles, count)
+    Q = _checked(Q)
+    count = int(Q.max()) + 1
+    held, places = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex)
+    if handles is not None:
+        if len(handles) != 2:
+            raise ValueError(f"handles has {len(handles)} parts: (numbers, points) is wanted")
+        held = _check_numbers(handles[0], "handles", count)
+        places = _points(handles[1], "handles", len(held))
     rims = _read_outlines(boundary, Q, count)
     start = None if start is None else _points(start, "start", count)
-    _check_enough(held, rims, start, smooth)
-    centre, size = _frame(places, *(curve for _, curve in rims), start)
+    centre, size = _frame(places, rims, start, smooth)
     places = (places - centre) / size
     rims = [(loop, (curve - centre) / size) for loop, curve in rims]
     start = None if start is None else (start - centre) / size
@@ -76,7 +81,7 @@ def planar_net(
     z = _glide(solve, count, len(held) > 1, rims, start)
     residual = _check_net(z, Q, K, len(held))
     apart = [np.abs(closest(z[loop], curve)[0] - z[loop]).max() for loop, curve in rims]
-    distance = float(size * max(apart)) if rims else np.nan
+    distance = float(size * max(apart, default=np.nan))
     flipped, wound = faults(z, Q)
     z = centre + size * z
     z[held] = centre + size * places
@@ -107,18 +112,17 @@ def _stencil(weights, index, count):
     return sparse.rows(np.tile(np.array(weights), (len(index), 1, 1)), index, count)
 
 
-def _check_mesh(Q):
-    """The faces and the number of their vertices, or a ValueError."""
+def _checked(Q):
+    """The faces, or a ValueError."""
     Q = mesh.check_quads(Q)
     mesh.require_labels(Q)
-    count = int(Q.max()) + 1
-    unused = np.setdiff1d(np.arange(count), Q)
+    unused = np.setdiff1d(np.arange(Q.max()), Q)
     if unused.size:
         raise ValueError(f"vertex {unused[0]} belongs to no face")
-    parts, _ = connected_components(_graph(Q, count), directed=False)
+    parts, _ = connected_components(_graph(Q, Q.max() + 1), directed=False)
     if parts > 1:
         raise ValueError(f"the mesh has {parts} separate parts: give them one by one")
-    return Q, count
+    return Q
 
 
 def _points(given, name, count=None):
@@ -137,16 +141,6 @@ def _points(given, name, count=None):
     if not np.isfinite(given).all():
         raise ValueError(f"{name}: point {np.argmin(np.isfinite(given))} is not finite")
     return given
-
-
-def _read_handles(given, count):
-    """Vertex numbers (k,) and complex points (k,) of (vertex numbers, points) or None."""
-    if given is None:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=complex)
-    if len(given) != 2:
-        raise ValueError(f"handles has {len(given)} parts: (vertex numbers, points) is wanted")
-    held = _check_numbers(given[0], "handles", count)
-    return held, _points(given[1], "handles", len(held))
 
 
 def _check_numbers(numbers, name, count):
@@ -183,19 +177,19 @@ def _closed(given):
     return z if np.sum((np.conj(z) * np.roll(z, -1)).imag) > 0 else z[::-1]
 
 
-def _check_enough(held, rims, start, smooth):
+def _frame(places, rims, start, smooth):
+    """Centre and size of all the points given, or a ValueError if they are not enough.
+
+    With these the numbers inside are about 1.
+    """
     if not (np.isfinite(smooth) and smooth >= 0):
         raise ValueError(f"smooth = {smooth}: a number >= 0 is wanted")
-    if len(held) < 2 and not rims and start is None:
+    if len(places) < 2 and not rims and start is None:
         words = "do not fix size and position: two, a boundary or a start are wanted"
-        raise ValueError(f"{len(held)} handles {words}")
-    if smooth == 0 and (rims or len(held) > 1):
+        raise ValueError(f"{len(places)} handles {words}")
+    if smooth == 0 and (rims or len(places) > 1):
         raise ValueError("smooth = 0: only the net closest to a start is fixed without it")
-
-
-def _frame(*points):
-    """Centre and size of all the points given, so that the numbers inside are about 1."""
-    every = np.concatenate([z for z in points if z is not None])
+    every = np.concatenate([places, *(curve for _, curve in rims), [] if start is None else start])
     centre = every.mean()
     size = np.abs(every - centre).max()
     if not size > 1e-12 * np.abs(every).max():
@@ -208,7 +202,10 @@ def _solver(Q, K, held, places, smooth):
     A = equations(Q, K)  # complex; below there are two real coordinates a vertex
     count = A.shape[1]
     A = csr_array(kron(A.real, np.eye(2), "csr") + kron(A.imag, np.array([[0, -1], [1, 0]]), "csr"))
-    fairness = smooth * kron(_fairness(Q, count), np.eye(2), format="csr")
+    along = _stencil([1.0, -2.0, 1.0], mesh.triples(Q), count)  # the polylines
+    twist = _stencil([1.0, -1.0, 1.0, -1.0], Q, count)
+    bends = along.T @ along + 2 * (twist.T @ twist)
+    fairness = smooth * kron(bends, np.eye(2), format="csr")
     penalty = PENALTY * (A.T @ A)
     free = np.setdiff1d(np.arange(count), held)
     factor = sparse.Factor(_layout(Q, count)[free])
@@ -235,13 +232,6 @@ def _solver(Q, K, held, places, smooth):
         return x[::2] + 1j * x[1::2]
 
     return solve
-
-
-def _fairness(Q, count):
-    """Squared second differences along the polylines, and the twist of the faces: (n, n)."""
-    along = _stencil([1.0, -2.0, 1.0], mesh.triples(Q), count)
-    twist = _stencil([1.0, -1.0, 1.0, -1.0], Q, count)
-    return along.T @ along + 2 * (twist.T @ twist)
 
 
 def _layout(Q, count):
@@ -274,7 +264,10 @@ def _glide(solve, count, enough, rims, start):
         weights[:], targets = np.eye(2), start
     elif not enough:
         for loop, curve in rims:
-            weights[loop], targets[loop] = np.eye(2), _spread(curve, len(loop))
+            ring = np.append(curve, curve[0])
+            length = np.concatenate([[0], np.cumsum(np.abs(np.diff(ring)))])
+            evenly = np.arange(len(loop)) / len(loop) * length[-1]
+            weights[loop], targets[loop] = np.eye(2), np.interp(evenly, length, ring)
     z = solve(weights, targets)
     for _ in range(STEPS if rims else 0):
         weights, targets = np.zeros((count, 2, 2)), np.zeros(count, dtype=complex)
@@ -286,13 +279,6 @@ def _glide(solve, count, enough, rims, start):
         if np.abs(z - before).max() < 1e-7:
             break
     return z
-
-
-def _spread(outline, count):
-    """Points at equal distances along a closed polyline, from its first point on."""
-    ring = np.append(outline, outline[0])
-    length = np.concatenate([[0], np.cumsum(np.abs(np.diff(ring)))])
-    return np.interp(np.arange(count) / count * length[-1], length, ring)
 
 
 def closest(z: np.ndarray, outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -324,11 +310,10 @@ def _check_net(z, Q, K, handles):
     if not long.max() > 1e-10:
         raise ValueError("the net collapses to a point: no other fits this mesh and these angles")
     if off.max() > EXACT * long.mean():
-        raise ValueError(
-            f"no net with these angles passes through the {handles} handles: off by "
-            f"{off.max() / long.mean():.2g} of a diagonal; there are {len(z) - len(Q)} complex "
-            "freedoms, best spent on every second boundary vertex"
-        )
+        far = f"{off.max() / long.mean():.2g} of a diagonal"
+        spare = f"{len(z) - len(Q)} complex freedoms, best spent on every second boundary vertex"
+        words = f"no net with these angles passes through the {handles} handles: off by {far}"
+        raise ValueError(f"{words}; there are {spare}")
     if long.min() <= 1e-9 * long.max():
         raise ValueError(f"the net collapses at face {np.argmin(long)}: ask for less")
     return float((off / long).max())

@@ -40,11 +40,9 @@ def darboux(matrix: Callable, generatrix: Callable, shift: Callable) -> Surface:
 
 def translation(generatrix: Callable, path: Callable) -> Surface:
     """The surface X(u) + a(v): one curve moved along another without turning."""
-
-    def coordinates(u, v):
-        return tuple(x + a for x, a in zip(generatrix(u), path(v), strict=True))
-
-    return Surface("translation surface", coordinates)
+    identity = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+    surface = darboux(lambda v: identity, generatrix, path)
+    return surface._replace(name="translation surface")
 
 
 def helical(generatrix: Callable, pitch: float) -> Surface:
@@ -231,10 +229,8 @@ def check_profile(profile: Profile) -> Profile:
         raise ValueError("the profile is not finite everywhere between start and stop")
     if not (x > 0).all():
         at = np.argmin(x)
-        raise ValueError(
-            f"radius = {x[at]:.6g} at t = {t[at]:.6g}: it must stay positive, "
-            "shorten the profile so that it does not reach the axis"
-        )
+        words = "it must stay positive, shorten the profile so that it does not reach the axis"
+        raise ValueError(f"radius = {x[at]:.6g} at t = {t[at]:.6g}: {words}")
     steps = np.diff([x, y])
     if not np.hypot(*steps).all():
         raise ValueError("the profile stands still somewhere: radius' and height' vanish together")
