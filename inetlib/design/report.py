@@ -10,6 +10,7 @@ from .. import measure, mesh, reference
 from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
+SHAPE = "flips", "darts", "corner", "area_ratio", "aspect", "planarity"
 
 
 class Report(NamedTuple):
@@ -19,7 +20,7 @@ class Report(NamedTuple):
     wanted           {"lam", "mu", "theta", "theta0"}: what was asked for, None where nothing was
     lam ... theta0   `measure.Spread` over the faces; deviations are from what was asked for,
                      or from the mean
-    flips, area_ratio, aspect, planarity    see `measure.quality`
+    flips, darts, corner, area_ratio, aspect, planarity    see `measure.quality`
     edge_low, edge_mean, edge_high          lengths of the edges
     size_ratio       longest / shortest d1: how much the similar parallelograms differ in size
 
@@ -46,6 +47,8 @@ class Report(NamedTuple):
     theta: measure.Spread
     theta0: measure.Spread
     flips: int
+    darts: int
+    corner: float
     area_ratio: float
     aspect: float
     planarity: float
@@ -95,7 +98,7 @@ def report(
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
     corners = tuple(sorted(len(polygon) for polygon in polygons))
-    shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
+    shape = (getattr(quality, name) for name in SHAPE)
     sizes = (float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
     known = len(np.unique(Q)), len(Q), corners, wanted, *spreads, *shape, *sizes
     return Report(*known)

@@ -91,9 +91,10 @@ def optimize(
     strict       raise `NotConverged` instead of returning a net that is off
     progress     show a bar; callback(step, V) after every step may return False to stop
 
-    A run that ends off its angles or with flipped faces is repeated with smaller strides; of
-    all nets the one with the fewest flips, then the smallest deviation, is returned.
-    `converged`: all faces have their angles, none is flipped.  Bad input is a ValueError.
+    A run that ends off its angles is repeated with smaller strides, one that ends with flipped
+    faces or darts with `run.coupled_step`; of all nets the one with the fewest of these, then
+    the smallest deviation, is returned.  `converged`: all faces have their angles, none is
+    flipped or a dart.  Bad input is a ValueError.
 
     >>> from inetlib import surfaces
     >>> found = optimize(*surfaces.freeform_patch(8, 8), theta=1.2, theta0=1.3)
@@ -120,8 +121,9 @@ def optimize(
     given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
-            options = run.Options(via, stride * factor, shape_steps, limit)
+        factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
+        for coupled, factor in _runs(log, factors, ours and not on_surface):
+            options = run.Options(via, stride * factor, shape_steps, limit, coupled)
             if ours:
                 run.ratio(log, options)
             else:
@@ -134,6 +136,16 @@ def optimize(
     return result
 
 
+def _runs(log, factors, coupling):
+    """(coupled, factor of the stride) of one run after the other, as long as they are wanted."""
+    for factor in factors:
+        yield False, factor
+        if log.history[-1].deviation <= log.tolerance:
+            break  # the angles are right, some faces are not: smaller strides do not help
+    if coupling and log.history[-1].key[0]:
+        yield from ((True, factor) for factor in factors)
+
+
 def _check_choice(name, value, allowed):
     if value not in allowed:
         raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
@@ -141,24 +153,24 @@ def _check_choice(name, value, allowed):
 
 def _result(log, ours):
     given = log.given
-    (flips, deviation), V, s = log.best
-    good = bool(deviation <= log.tolerance and flips == 0)
+    best, V, s = log.best
+    good = bool(best.key <= (0, log.tolerance))
     lam, mu = (float(x) for x in np.exp(logs(given.goal, s)[0]))
     found = (float(x) for x in angles(given.goal, s))
-    message = _message(good, log.stopped, flips, deviation, len(log.history) - 1)
+    message = _message(good, log.stopped, best, len(log.history) - 1)
     sizes = V.size + len(s), 2 * len(given.Q)
     if not ours:
         sizes = guided.size(given.Q, len(V), given.goal)
     return Result(V, lam, mu, *found, log.history, good, message, given.seconds, sizes)
 
 
-def _message(good, stopped, flips, deviation, count):
+def _message(good, stopped, best, count):
     if good:
         words = f"converged in {count} steps"
     elif stopped:
         words = f"stopped by the caller after {count} steps"
-    elif flips:
-        words = f"not converged in {count} steps, every net on the way had flipped faces"
+    elif best.key[0]:
+        words = f"not converged in {count} steps, every net on the way had flipped faces or darts"
     else:
-        words = f"not converged in {count} steps, this is the best net without flipped faces"
-    return f"{words}: at most {np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+        words = f"not converged in {count} steps, this is the best net without flips and darts"
+    return f"{words}: {best.words}"

@@ -53,14 +53,12 @@ def optimize(
     with tqdm(disable=not progress, unit=" steps", desc="coarse grid") as bar:
         for sizes in plans if plans[0] != plans[1] else plans[:1]:
             found = _attempt(X, wanted, sizes, tolerance, seconds, bar)
-            best = min(best or found, found, key=lambda one: one[1])
-            if best[1] <= (0, tolerance):
+            best = min(best or found, found, key=lambda one: one[1].key)
+            if best[1].key <= (0, tolerance):
                 break
-    V, (flips, deviation), history, words = best
-    good = bool(flips == 0 and deviation <= tolerance)
-    message = f"{'' if good else 'not '}converged: {words}; at most " + (
-        f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
-    )
+    V, last, history, words = best
+    good = bool(last.key <= (0, tolerance))
+    message = f"{'' if good else 'not '}converged: {words}; {last.words}"
     ratios = (float(x) for x in np.exp(logs(wanted, [])[0]))
     told = history, good, message, seconds, (V.size, 2 * m * n)
     return Result._make([V, *ratios, *wanted.values, *told])
@@ -89,7 +87,7 @@ def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
 
 
 def _attempt(X, goal, sizes, tolerance, seconds, bar):
-    """(V, (flips, deviation), history, words) of one run through the levels."""
+    """(V, its `run.Step`, history, words) of one run through the levels."""
     P = np.moveaxis(X, 2, 0)
     with timed(seconds, "coarse"):
         V = _vertices(refine(P, *sizes[0]))
@@ -114,8 +112,8 @@ def _attempt(X, goal, sizes, tolerance, seconds, bar):
     measured = _judge(sizes[-1], goal, {})
     for P in nets:
         if (step := measured(P)) is not None:
-            found.append((_vertices(P).copy(), (step.flips, step.deviation)))
-    return *min(found, key=lambda one: one[1]), history, ", ".join(words)
+            found.append((_vertices(P).copy(), step))
+    return *min(found, key=lambda one: one[1].key), history, ", ".join(words)
 
 
 def _words(size, count):
@@ -140,7 +138,7 @@ def _level(P, goal, most, exact, enough, seconds, bar):
         off = f"{np.degrees(step.deviation):.2g} degrees off"
         bar.set_description(f"{size[0]} x {size[1]} quads, {off}")
         bar.update()
-    return P, history, step is not None and not step.flips and step.deviation <= enough
+    return P, history, step is not None and step.key <= (0, enough)
 
 
 def _judge(size, goal, seconds):
