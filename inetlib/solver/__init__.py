@@ -123,11 +123,11 @@ def optimize(
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
         for coupled, factor in _runs(log, factors, ours and not on_surface):
-            options = run.Options(via, stride * factor, shape_steps, limit, coupled)
+            goals = run.way(given, via, stride * factor)
             if ours:
-                run.ratio(log, options)
+                run.ratio(log, goals, shape_steps, limit, coupled)
             else:
-                guided.run(log, options, spsolve if formulation == "paper" else None)
+                guided.run(log, goals, limit, spsolve if formulation == "paper" else None)
             if log.done or len(log.history) > limit:
                 break
     result = _result(log, ours)
@@ -152,25 +152,21 @@ def _check_choice(name, value, allowed):
 
 
 def _result(log, ours):
-    given = log.given
+    """The `Result` of the best net."""
+    given, count = log.given, len(log.history) - 1
     best, V, s = log.best
     good = bool(best.key <= (0, log.tolerance))
-    lam, mu = (float(x) for x in np.exp(logs(given.goal, s)[0]))
-    found = (float(x) for x in angles(given.goal, s))
-    message = _message(good, log.stopped, best, len(log.history) - 1)
-    sizes = V.size + len(s), 2 * len(given.Q)
-    if not ours:
-        sizes = guided.size(given.Q, len(V), given.goal)
-    return Result(V, lam, mu, *found, log.history, good, message, given.seconds, sizes)
-
-
-def _message(good, stopped, best, count):
     if good:
         words = f"converged in {count} steps"
-    elif stopped:
+    elif log.stopped:
         words = f"stopped by the caller after {count} steps"
     elif best.key[0]:
         words = f"not converged in {count} steps, every net on the way had flipped faces or darts"
     else:
         words = f"not converged in {count} steps, this is the best net without flips and darts"
-    return f"{words}: {best.words}"
+    shape = map(float, (*np.exp(logs(given.goal, s)[0]), *angles(given.goal, s)))
+    sizes = V.size + len(s), 2 * len(given.Q)
+    if not ours:
+        sizes = guided.size(given.Q, len(V), given.goal)
+    message = f"{words}: {best.words}"
+    return Result(V, *shape, log.history, good, message, given.seconds, sizes)

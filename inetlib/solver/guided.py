@@ -18,7 +18,7 @@ from ..parallelogram import ratios
 from . import residuals, sparse
 from .goal import Goal, freedom
 from .problem import shape
-from .run import Log, Options, timed, way
+from .run import Log, timed
 
 EPSILON = 0.001  # of the regularisation
 STEPS = 17  # as many as the paper makes, the last two without shape energies
@@ -118,8 +118,8 @@ def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]
     return np.concatenate(found), vstack(blocks, format="csr")
 
 
-def run(log: Log, options: Options, solve: Callable | None = None) -> None:
-    """Guided projection: a fixed number of steps, the last two without shape energies.
+def run(log: Log, goals: list[Goal], limit: int, solve: Callable | None = None) -> None:
+    """Guided projection: `limit` steps, the last two without shape energies, to `run.way` goals.
 
     x holds lengths in units of the diagonal of the bounding box, as the paper scales its
     meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
@@ -127,10 +127,9 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
     """
     given, V, lay = log.given, log.given.V, None
     solve = solve or (lambda A, b: sparse.factor(A)(b))
-    goals = way(given, options.via, options.stride)
     diagonal = np.linalg.norm(np.ptp(V, axis=0))
-    last = options.limit - 2
-    for k in range(options.limit):
+    last = limit - 2
+    for k in range(limit):
         goal = goals[k] if k < min(len(goals), last) else given.goal
         if lay is None or goal.equal != lay.theta_mode:
             lay = layout(given.Q, len(V), goal.equal)

@@ -32,28 +32,24 @@ PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.0
 
 
 class Problem(NamedTuple):
-    """A checked problem: the arguments of `prepare`, weights and mobility as arrays (n,).
-
-    boundary: vertices on it; fair: the matrix of fairness; neighbours: of the faces; edge:
-    the mean length of an edge; the factors solve the linear systems of the kinds of steps;
-    seconds: {stage: seconds} spent so far.
-    """
+    """A checked problem: the arguments of `prepare`, and what they lead to."""
 
     V: np.ndarray
     Q: np.ndarray
     goal: Goal
-    weights: Weights
+    weights: Weights  # arrays (n,)
     reference: Reference | None
     on_surface: bool
-    mobility: np.ndarray
-    boundary: np.ndarray
-    fair: csr_array
-    neighbours: np.ndarray
-    edge: float
-    shape_factor: sparse.Factor
+    mobility: np.ndarray  # (n,)
+    boundary: np.ndarray  # the vertices on it
+    fair: csr_array  # the matrix of fairness
+    neighbours: np.ndarray  # of the faces
+    edge: float  # mean length
+    rounding: float  # the angle by which rounding of V may turn the shortest edge
+    shape_factor: sparse.Factor  # of the linear systems, one for each kind of step
     angle_factor: sparse.Factor
     quadratic: bool
-    seconds: dict
+    seconds: dict  # {stage: seconds} spent so far
 
 
 def prepare(
@@ -75,7 +71,13 @@ def prepare(
     moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net;
     quadratic: the kind of residual, see `run.equations`.
     """
-    V, Q = _checked_mesh(V, Q)
+    if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
+        face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
+        words = f"face {face} has {np.size(Q[face])} corners: give the quads as Q"
+        raise ValueError(f"{words} and the other faces as polygons=[...]")
+    V, Q = mesh.check(V, Q)
+    mesh.require_labels(Q)
+    measure.quality(V, Q)  # refuses collapsed faces
     weights = _checked_weights(weights or Weights(), len(V))
     boundary = _boundary(Q, polygons)
     mobility = _mobility(mobility, fixed, boundary, len(V))
@@ -84,10 +86,11 @@ def prepare(
     elif on_surface:
         raise ValueError("on_surface=True needs a reference surface")
     fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
-    edge = float(np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean())
+    edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
+    lengths = float(edges.mean()), 8 * np.spacing(np.abs(V).max()) / edges.min()
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
-    return Problem(V, Q, *kept, mesh.face_neighbours(Q), edge, *factors, quadratic, {})
+    return Problem(V, Q, *kept, mesh.face_neighbours(Q), *lengths, *factors, quadratic, {})
 
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
@@ -112,28 +115,13 @@ def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     return A, g
 
 
-def _checked_mesh(V, Q):
-    if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
-        face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
-        raise ValueError(
-            f"face {face} has {np.size(Q[face])} corners: give the quads as Q "
-            "and the other faces as polygons=[...]"
-        )
-    V, Q = mesh.check(V, Q)
-    mesh.require_labels(Q)
-    measure.quality(V, Q)  # refuses collapsed faces
-    return V, Q
-
-
 def _checked_weights(weights, count):
     found = {}
     for name, value in weights._asdict().items():
         value = np.asarray(value, dtype=float)
         if value.ndim and value.shape != (count,):
-            raise ValueError(
-                f"weights.{name} has the shape {value.shape}: one number, or one for each of "
-                f"the {count} vertices, is wanted"
-            )
+            words = f"weights.{name} has the shape {value.shape}: one number, or one for each of"
+            raise ValueError(f"{words} the {count} vertices, is wanted")
         if not (np.isfinite(value).all() and (value >= 0).all()):
             raise ValueError(f"weights.{name} = {value.min():.6g}: weights are finite and >= 0")
         found[name] = np.broadcast_to(value, (count,))
@@ -150,10 +138,9 @@ def _mobility(mobility, fixed, boundary, count):
             raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
         fixed = boundary
     fixed = np.asarray([] if fixed is None else fixed)
-    if fixed.dtype == bool:
-        if fixed.shape != (count,):
-            raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
-    elif fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
+    if fixed.dtype == bool and fixed.shape != (count,):
+        raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
+    if fixed.dtype != bool and fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
         raise ValueError(f"fixed names a vertex that is not there: 0 to {count - 1} are wanted")
     if fixed.size:
         mobility[fixed] = 0
@@ -168,10 +155,8 @@ def _boundary(Q, polygons):
     for polygon in polygons:
         rim = frozenset(np.asarray(polygon).ravel().tolist())
         if loops.pop(rim, None) is None:
-            raise ValueError(
-                f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must "
-                "be all the vertices of one boundary loop"
-            )
+            words = f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must"
+            raise ValueError(f"{words} be all the vertices of one boundary loop")
     return np.concatenate([np.zeros(0, dtype=np.int64), *loops.values()])
 
 
