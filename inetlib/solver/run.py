@@ -15,6 +15,8 @@ from . import residuals, sparse
 from .goal import Goal, aim, angles, freedom, logs, towards
 from .problem import Problem, shape
 
+Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
+
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
 LOOSE = 1e-6  # weight of the size of a coupled step against its equations
 COUPLING = 10  # of every other vertex and the rest, in that size
@@ -112,9 +114,7 @@ def equations(
     return found.ravel(), J, np.tile(slopes, (len(x), 1))
 
 
-def shape_step(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def shape_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s) of one Gauss-Newton step on all energies.
 
     All lengths are measured in mean edges, so the step does not depend on the scale.
@@ -146,9 +146,7 @@ def _least(solve, J, f, G, g):
     return y[:, 1:] @ ds - y[:, 0], ds
 
 
-def coupled_step(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def coupled_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s): a smallest change to the angles that makes no darts.
 
     The angles see diagonals only, so that shifting every other vertex costs nothing (darts).
@@ -175,9 +173,7 @@ def coupled_step(
     return (root * (y + more)).reshape(-1, 3), ds + further
 
 
-def angle_step(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s): the smallest change to the linearised angles.
 
     Smallest in the sum of |d|^2 / mobility over the vertices.  On a surface (`on_surface`)

@@ -1,4 +1,7 @@
-"""Sparse matrices from local Jacobians, and their factorisation."""
+"""Sparse matrices from local Jacobians, and their factorisation.
+
+From `step` on: a smallest step of a large grid, by conjugate gradients without any matrix.
+"""
 
 from collections.abc import Callable
 
@@ -15,6 +18,7 @@ BLAS = ThreadpoolController()
 NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
 MANY = 5000  # from here on nested dissection beats minimum degree
 LEAF = 16  # points that need no further division
+INEXACT = 1e-4  # relative residual of the conjugate gradients
 
 
 def rows(jacobian: np.ndarray, index: np.ndarray, columns: int) -> csr_array:
@@ -42,10 +46,9 @@ def scaled(A: csr_array, columns: np.ndarray | float) -> csr_array:
 def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
     """A function that solves A x = b, for a symmetric positive definite sparse A.
 
-    order: a permutation of the rows that keeps the factors sparse, such as that of
-    `nested_dissection`; without one, a band where A is narrow, else minimum degree on the
-    pattern of A + A^T, many times faster here than SuperLU's default ordering.  Pivots are
-    on the diagonal.
+    order: a permutation of the rows, such as that of `nested_dissection`; without one, a band
+    where A is narrow, else minimum degree on the pattern of A + A^T, many times faster here
+    than SuperLU's default.  Pivots are on the diagonal.
     """
     if order is None:
         return _banded(A) or _superlu(A.tocsc(), "MMD_AT_PLUS_A").solve
@@ -81,8 +84,7 @@ class Factor:
 
 
 def _superlu(A, ordering):
-    options = {"SymmetricMode": True}
-    return splu(A, permc_spec=ordering, diag_pivot_thresh=0.0, options=options)
+    return splu(A, ordering, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _banded(A):
@@ -145,11 +147,6 @@ def _halves(points, part):
     return side
 
 
-# --- a smallest step of a large grid: conjugate gradients without any matrix ----------------
-
-INEXACT = 1e-4  # relative residual of the conjugate gradients
-
-
 def step(A: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, int]:
     """(d, iterations): the smallest change with J d = f, nearly; d (3, m+1, n+1)."""
     y, count = solve(A, f)
@@ -191,16 +188,15 @@ def solve(
     A: np.ndarray, f: np.ndarray, tolerance: float = INEXACT, most: int = 300
 ) -> tuple[np.ndarray, int]:
     """(y, iterations) with J J^T y = f up to the relative residual: conjugate gradients."""
-    steps: list = []
 
     def flat(apply):
         shape = f.size, f.size
         return LinearOperator(shape, lambda x: apply(x.reshape(f.shape)).ravel(), dtype=float)
 
-    matrix, inverse = flat(lambda y: times(A, transposed(A, y))), flat(preconditioner(A))
-    how = {"rtol": tolerance, "maxiter": most, "M": inverse, "callback": steps.append}
+    matrix, M = flat(lambda y: times(A, transposed(A, y))), flat(preconditioner(A))
+    steps: list = []
     with BLAS.limit(limits=1, user_api="blas"):  # more threads only wait here
-        y, _ = cg(matrix, f.ravel(), **how)
+        y, _ = cg(matrix, f.ravel(), rtol=tolerance, maxiter=most, M=M, callback=steps.append)
     return y.reshape(f.shape), len(steps)
 
 
