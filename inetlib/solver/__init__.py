@@ -29,22 +29,18 @@ class NotConverged(RuntimeError):
 
 
 class Result(NamedTuple):
-    """The optimised net: V (n, 3), its ratios and angles (radians), and how it was found.
+    """The optimised net, and how it was found."""
 
-    history: list of `run.Step`, the first is the start; seconds: {stage: seconds}; sizes:
-    (#var, #cons) of the formulation; message: why it converged or did not.
-    """
-
-    V: np.ndarray
+    V: np.ndarray  # (n, 3)
     lam: float
     mu: float
-    theta: float
+    theta: float  # radians
     theta0: float
-    history: list
+    history: list  # of `run.Step`, the first is the start
     converged: bool
-    message: str
-    seconds: dict
-    sizes: tuple
+    message: str  # why it converged or did not
+    seconds: dict  # {stage: seconds}
+    sizes: tuple  # (#var, #cons) of the formulation
 
 
 def optimize(
@@ -117,8 +113,8 @@ def optimize(
         limit = check_whole("iterations", iterations, 0)
     shape_steps = check_whole("shape_steps", shape_steps, 0)
     weights = weights or (Weights() if ours else PAPER)
-    surface, still = (reference, on_surface), (fixed, mobility, polygons)
-    given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
+    still, quadratic = (fixed, mobility, polygons), residual == "quadratic"
+    given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]

@@ -25,23 +25,23 @@ STEPS = 17  # as many as the paper makes, the last two without shape energies
 
 
 class Layout(NamedTuple):
-    """Where the unknowns stand: corners (f, 12), names of the others (f,) or one number."""
+    """Where the unknowns stand."""
 
     theta_mode: bool
-    corners: np.ndarray
-    at: dict
-    columns: int
+    corners: np.ndarray  # (f, 12)
+    at: dict  # the other variables by name, each (f,)
+    columns: int  # how many
 
 
 def layout(Q: np.ndarray, count: int, theta_mode: bool) -> Layout:
     """The `Layout` of a mesh of `count` vertices.  Paper: Eq. (17), Eq. (18), Eq. (21), Table 1."""
-    F, start = len(Q), 3 * count
     names = ["La", "Lb"] if theta_mode else ["La", "Lb", "Lp", "Lq", "c1", "c2"]
-    at = {name: np.arange(start + k * F, start + (k + 1) * F) for k, name in enumerate(names)}
-    start += len(names) * F
     common = ["c1"] if theta_mode else ["lam", "mu"]
-    at |= {name: np.full(F, start + k) for k, name in enumerate(common)}
-    return Layout(theta_mode, sparse.coordinates(Q), at, start + len(common))
+    here = 3 * count + np.arange(len(names) * len(Q)).reshape(len(names), len(Q))
+    end = 3 * count + here.size
+    at = dict(zip(names, here, strict=True))
+    at |= {name: np.full(len(Q), end + k) for k, name in enumerate(common)}
+    return Layout(theta_mode, sparse.coordinates(Q), at, end + len(common))
 
 
 def start(lay: Layout, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
@@ -52,13 +52,12 @@ def start(lay: Layout, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
     d1, d2 = P[:, 2] - P[:, 0], P[:, 3] - P[:, 1]
     La, Lb, Lp, Lq = (np.einsum("ij,ij->i", d, d) for d in (d1, d2, d1 + d2, d2 - d1))
     lam, mu = np.sqrt(Lb / La), np.sqrt(Lp / Lq)
+    values = {"La": La, "Lb": Lb, "Lp": Lp, "Lq": Lq, "c1": lam**2, "c2": mu**2}
+    values |= {"lam": lam.mean(), "mu": mu.mean()}
     if lay.theta_mode:
-        values = {"La": La, "Lb": Lb, "c1": np.mean(lam**2)}
-    else:
-        values = {"La": La, "Lb": Lb, "Lp": Lp, "Lq": Lq, "c1": lam**2, "c2": mu**2}
-        values |= {"lam": lam.mean(), "mu": mu.mean()}
-    for name, value in values.items():
-        x[lay.at[name]] = value
+        values["c1"] = np.mean(lam**2)
+    for name, columns in lay.at.items():
+        x[columns] = values[name]
     return x
 
 
@@ -96,10 +95,10 @@ def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple
     ]
     if goal.kind in ("lam", "mu"):
         return [*found, (residuals.given, index(goal.kind)[:1], (np.exp(goal.values[0]),))]
-    columns = {"theta": ("lam", "c1", "c2"), "theta0": ("mu", "c2", "c1")}
-    names = tuple(columns) if goal.kind == "angles" else (goal.kind,)
+    known = {"theta": index("lam", "c1", "c2"), "theta0": index("mu", "c2", "c1")}
+    names = tuple(known) if goal.kind == "angles" else (goal.kind,)
     pairs = zip(names, goal.values, strict=False)
-    return found + [(residuals.given_angle, index(*columns[k]), (x,)) for k, x in pairs]
+    return found + [(residuals.given_angle, known[name], (angle,)) for name, angle in pairs]
 
 
 def size(Q: np.ndarray, count: int, goal: Goal) -> tuple[int, int]:
