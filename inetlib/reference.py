@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from . import repair, surfaces, ties
-from .mesh import opposites, triangles
+from .mesh import half_edges, opposites, triangles
 
 CORNER = np.radians(30)  # a boundary that turns by more at a vertex has a corner there
 ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])  # of the diagonal: no symmetry of any surface
@@ -29,15 +29,13 @@ class Reference(NamedTuple):
     closest(points)   closest points and unit normals of the surface there, each (k, 3)
     boundary(points)  closest points on the boundary and an orthonormal frame e1, e2, e3
                       there, each (k, 3): e1 along the boundary, e3 normal to the surface
-    diagonal          of the bounding box
-    V, F              the triangles, None for a parametric reference
     """
 
     closest: Callable
-    diagonal: float
+    diagonal: float  # of the bounding box
     boundary: Callable = no_boundary
-    V: np.ndarray | None = None
-    F: np.ndarray | None = None
+    V: np.ndarray | None = None  # None for a parametric reference
+    F: np.ndarray | None = None  # triangles
 
     @property
     def has_boundary(self) -> bool:
@@ -48,19 +46,18 @@ class Reference(NamedTuple):
 def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
     """The `Reference` of a mesh of triangles (f, 3) or quads (f, 4) with vertices V (n, 3).
 
-    A quad is two triangles, cut along its shorter diagonal.  Closest points are exact;
-    normals are interpolated between the vertex normals (weighted by the angles of the faces),
-    so that they have no jump at an edge, and are those of the face where that degenerates.
-    So is e1 along the boundary, with the mesh on its left; at corners, where the boundary
-    turns by more than 30 degrees, it is the direction of the segment hit (at the corner
-    itself, of the one that leaves it).  ValueError for faces that are no oriented manifold,
-    and for triangles without area.
+    A quad is two triangles, cut along its shorter diagonal.  Closest points are exact; normals
+    are interpolated between the vertex normals (weighted by the angles of the faces), and those
+    of the face where that degenerates.  So is e1 along the boundary, with the mesh on its left;
+    at corners, where the boundary turns by more than 30 degrees, it is the direction of the
+    segment hit (at the corner itself, of the one that leaves it).  ValueError for faces that
+    are no oriented manifold, and for triangles without area.
     """
     V, F = (a.copy() for a in triangles(V, F))  # later changes of V do not change the tree
     face, twin = repair.normals(V, F), opposites(F)
     repair.require_single_fans(V, F, twin)
-    smooth = igl.per_vertex_normals(V, F, igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE)
-    smooth = np.nan_to_num(smooth)  # unused vertices, and normals that cancel
+    by_angle = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
+    smooth = np.nan_to_num(igl.per_vertex_normals(V, F, by_angle))  # unused; normals that cancel
     diagonal = float(np.linalg.norm(np.ptp(V[np.unique(F)], axis=0)))
     nearest = _search(V, F, diagonal)
 
@@ -71,7 +68,7 @@ def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
         return feet, _unit_or(normals, face[hit])
 
     half = np.flatnonzero(twin < 0)
-    edges = np.stack([F.ravel()[half], np.roll(F, -1, axis=1).ravel()[half]], axis=1)
+    edges = np.stack(half_edges(F), axis=1)[half]
     rim = _boundary(V, edges, smooth, face[half // 3], diagonal) if half.size else no_boundary
     return Reference(closest, diagonal, rim, V, F)
 
@@ -90,8 +87,8 @@ def _boundary(V, edges, smooth, face, diagonal):
         hit, feet = nearest(points)
         t = np.einsum("ij,ij->i", feet - V[edges[hit, 0]], along[hit]) / length[hit]
         end = t > 1 - ties.TIE  # as near to the next segment
-        hit, t = np.where(end, after[hit], hit), np.where(end, 0, t)
-        weights = np.clip(np.stack([1 - t, t], axis=1), 0, 1)[..., None]
+        hit, t = np.where(end, after[hit], hit), np.where(end, 0, np.clip(t, 0, 1))
+        weights = np.stack([1 - t, t], axis=1)[..., None]
         e1 = _unit_or(np.sum(weights * tangents[hit], axis=1), along[hit])
         plain = _across(face[hit], e1)  # never short: e1 is close to the edge
         plain /= np.linalg.norm(plain, axis=1, keepdims=True)
@@ -174,8 +171,8 @@ def _feet(p, corners):
 def _barycentric(p, a, b, c):
     """Barycentric coordinates (k, 3) of the feet of points p in planes a, b, c, each (k, 3)."""
     u, v, w = b - a, c - a, p - a
-    products = ((u, u), (u, v), (v, v), (w, u), (w, v))
-    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", x, y) for x, y in products)
+    pairs = (u, u), (u, v), (v, v), (w, u), (w, v)
+    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", *pair) for pair in pairs)
     area = uu * vv - uv * uv
     second, third = (vv * wu - uv * wv) / area, (uu * wv - uv * wu) / area
     return np.stack([1 - second - third, second, third], axis=1)
@@ -185,7 +182,6 @@ def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = 
     """The `Reference` of the surface point(u, v) over u[0] <= u <= u[1], v[0] <= v <= v[1].
 
     point     takes two arrays of one shape, returns points (..., 3), smooth in u and v
-    u, v      the domain, two numbers each
     tangents  takes the same, returns the pair (X_u, X_v), each (..., 3); default: finite
               differences, for features of the surface wider than a tenth of the domain
 
@@ -193,8 +189,8 @@ def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = 
     1e-12 of the surface's size; of sheets closer to each other than the samples, another than
     the nearest may be hit.  The surface goes on for a tenth of the domain on all sides, if
     `point` does, else its last 0.15 % know their tangents to about 1e-6 only.  The normal at
-    a pole of the parametrisation is that of a point close by.  ValueError for an empty
-    domain, and for points that are not finite or make no surface.
+    a pole is that of a point close by.  ValueError for an empty domain, and for points that are
+    not finite or make no surface.
     """
     for name, pair in (("u", u), ("v", v)):
         if np.shape(pair) != (2,) or not (np.isfinite(pair).all() and pair[0] < pair[1]):
@@ -258,10 +254,9 @@ class _Patch:
         st = np.stack(np.divmod(self.tree.query(points)[1], SAMPLES + 1), axis=1) / SAMPLES
         busy = np.arange(len(points))
         for _ in range(50):
-            if not busy.size:
-                break
-            st[busy], moved = self._line_search(points[busy], st[busy])
-            busy = busy[moved > 1e-12 * self.size]  # the next step would be far smaller still
+            if busy.size:
+                st[busy], moved = self._line_search(points[busy], st[busy])
+                busy = busy[moved > 1e-12 * self.size]  # the next step would be far smaller still
         normals = np.cross(*self._derivatives(st)[0])
         pole = np.linalg.norm(normals, axis=1) < 1e-7 * self.area
         inside = st[pole] + 1e-5 * (0.5 - st[pole])  # at a pole the normal of a point close by

@@ -16,15 +16,12 @@ SAME = 1e-12  # of the bounding box: vertices closer than this are at one place
 
 
 class Clean(NamedTuple):
-    """A surface that can be covered: V (n, 3), triangles F (f, 3), oriented, and every vertex used.
+    """A surface that can be covered: oriented, and every vertex used."""
 
-    loops: the boundary loops, one for a disk, two for a ring; repairs: what was done, sentences.
-    """
-
-    V: np.ndarray
-    F: np.ndarray
-    loops: list
-    repairs: list
+    V: np.ndarray  # (n, 3)
+    F: np.ndarray  # (f, 3)
+    loops: list  # the boundary loops, one for a disk, two for a ring
+    repairs: list  # what was done, sentences
 
 
 def clean(V: np.ndarray, F: np.ndarray) -> Clean:
@@ -34,16 +31,16 @@ def clean(V: np.ndarray, F: np.ndarray) -> Clean:
     halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
     for what no step can repair, and for all but disks and rings.
     """
-    V, T = mesh.triangles(V, F)
+    given = mesh.triangles(V, F)
     try:
-        W, G, said = _oriented(V, T)
-        loops = topology(G)
+        V, F, said = _oriented(*given)
+        loops = topology(F)
     except ValueError:
-        W, G, said = _oriented(V, T, SAME)
-        loops = topology(G)
+        V, F, said = _oriented(*given, SAME)
+        loops = topology(F)
     if len(loops) > 1:
-        W, G = _without_chords(W, G, loops)
-    return Clean(W, G, loops, said)
+        V, F = _without_chords(V, F, loops)
+    return Clean(V, F, loops, said)
 
 
 def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
@@ -173,19 +170,16 @@ def topology(T: np.ndarray) -> list:
     one, two = mesh.pairs(T).T // 3
     sizes = np.sort(np.bincount(components(len(T), one, two)))[::-1]
     if len(sizes) > 1:
-        raise ValueError(
-            f"the surface has {len(sizes)} separate pieces (of {', '.join(map(str, sizes[:4]))} "
-            f"{'... ' if len(sizes) > 4 else ''}faces): one is wanted, cover them one by one"
-        )
+        some = ", ".join(map(str, sizes[:4])) + " ..." * (len(sizes) > 4)
+        pieces = f"{len(sizes)} separate pieces (of {some} faces)"
+        raise ValueError(f"the surface has {pieces}: one is wanted, cover them one by one")
     loops = mesh.boundary_loops(T)
     euler = len(np.unique(T)) - (T.size + sum(map(len, loops))) // 2 + len(T)
     handles = (2 - len(loops) - euler) // 2
     if handles or len(loops) not in (1, 2):
-        raise ValueError(
-            f"the surface {'has' if loops else 'is closed: it has'} {len(loops)} boundary loops "
-            f"and {handles} handles: cut it into disks (1 loop, no handle) or rings (2 loops, no "
-            "handle)"
-        )
+        found = f"{'has' if loops else 'is closed: it has'} {len(loops)} boundary loops and"
+        wanted = "cut it into disks (1 loop, no handle) or rings (2 loops, no handle)"
+        raise ValueError(f"the surface {found} {handles} handles: {wanted}")
     return sorted(loops, key=len, reverse=True)
 
 
@@ -228,16 +222,12 @@ def weld(V: np.ndarray, F: np.ndarray) -> tuple:
 def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
     """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
-    Quads are cut along the shorter diagonal, larger polygons ear by ear.  ValueError where no
-    ear is left: no area, or sides that cross.
+    Quads are cut along the shorter diagonal, polygons ear by ear: ValueError where none is left.
     """
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]
-    faces = [  # without corners that repeat the one before
-        [k for k, before in zip(face, [face[-1], *face[:-1]], strict=True) if k != before]
-        for face in F
-    ]
-    sizes = np.array([len(face) for face in faces])
+    faces = [[k for k, one in zip(f, [f[-1], *f[:-1]], strict=True) if k != one] for f in F]
+    sizes = np.array(list(map(len, faces)))
     parts, owner = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for size in np.unique(sizes[sizes >= 3]):
         which = np.flatnonzero(sizes == size)

@@ -60,9 +60,8 @@ def optimize(
     V, last, history, words = best
     good = bool(last.key <= (0, tolerance))
     message = f"{'' if good else 'not '}converged: {words}; {last.words}"
-    lam, mu = (float(x) for x in np.exp(logs(wanted, [])[0]))
-    told = history, good, message, seconds, (V.size, 2 * m * n)
-    return Result(V, lam, mu, *wanted.values, *told)
+    shape = (*map(float, np.exp(logs(wanted, [])[0])), *wanted.values)
+    return Result._make([V, *shape, history, good, message, seconds, (V.size, 2 * m * n)])
 
 
 def _checked(X):

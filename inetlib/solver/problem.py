@@ -17,15 +17,14 @@ FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
 class Weights(NamedTuple):
     """Weights of the shape energies, numbers >= 0 or arrays (n,), one number a vertex.
 
-    fairness (omega_2), closeness (omega_3), approximation (omega_4), boundary (omega_5).
     The formulation "ratio" compares them with logarithms of ratios, lengths in mean edges;
     "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`.
     """
 
-    fairness: float | np.ndarray = 0.02
-    closeness: float | np.ndarray = 0.001
-    approximation: float | np.ndarray = 0.1
-    boundary: float | np.ndarray = 0.0003
+    fairness: float | np.ndarray = 0.02  # omega_2
+    closeness: float | np.ndarray = 0.001  # omega_3
+    approximation: float | np.ndarray = 0.1  # omega_4
+    boundary: float | np.ndarray = 0.0003  # omega_5
 
 
 PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.01)
@@ -64,12 +63,11 @@ def prepare(
     polygons: Sequence = (),
     quadratic: bool = False,
 ) -> Problem:
-    """The `Problem` of a labelled mesh, or a ValueError that says what is wrong with the input.
+    """The `Problem` of a labelled mesh V (n, 3), Q (f, 4), or a ValueError that says what is wrong.
 
-    V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
-    fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
-    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net;
-    quadratic: the kind of residual, see `run.equations`.
+    on_surface: keep the vertices on the reference; fixed: vertex numbers, a mask or "boundary";
+    mobility (n,), how easily each vertex moves, 0 not at all; polygons: faces that are no quads
+    and bound no boundary of the net; quadratic: the kind of residual, see `run.equations`.
     """
     if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
         face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
@@ -133,11 +131,9 @@ def _mobility(mobility, fixed, boundary, count):
     mobility = np.ones(count) if mobility is None else np.array(mobility, dtype=float)
     if mobility.shape != (count,) or not np.isfinite(mobility).all() or (mobility < 0).any():
         raise ValueError(f"mobility: {count} finite numbers >= 0 are wanted, one for each vertex")
-    if isinstance(fixed, str):
-        if fixed != "boundary":
-            raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
-        fixed = boundary
-    fixed = np.asarray([] if fixed is None else fixed)
+    if isinstance(fixed, str) and fixed != "boundary":
+        raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
+    fixed = np.asarray(boundary if isinstance(fixed, str) else [] if fixed is None else fixed)
     if fixed.dtype == bool and fixed.shape != (count,):
         raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
     if fixed.dtype != bool and fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
@@ -164,10 +160,8 @@ def _check_distance(V, reference):
     feet, _ = reference.closest(V)
     apart = np.linalg.norm(V - feet, axis=1).mean() / reference.diagonal
     if not apart < FAR:
-        raise ValueError(
-            f"the reference surface is far away: {apart:.3g} of its bounding-box diagonal on "
-            f"average, at most {FAR} is wanted; bring both into one coordinate system"
-        )
+        far = f"{apart:.3g} of its diagonal on average, at most {FAR} is wanted"
+        raise ValueError(f"the reference is far away, {far}: bring both into one coordinate system")
 
 
 def _fairness(triples, weights, count):
