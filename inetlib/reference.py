@@ -90,8 +90,8 @@ def _boundary(V, edges, smooth, face, diagonal):
         hit, t = np.where(end, after[hit], hit), np.where(end, 0, np.clip(t, 0, 1))
         weights = np.stack([1 - t, t], axis=1)[..., None]
         e1 = _unit_or(np.sum(weights * tangents[hit], axis=1), along[hit])
-        plain = _across(face[hit], e1)  # never short: e1 is close to the edge
-        plain /= np.linalg.norm(plain, axis=1, keepdims=True)
+        plain = _across(face[hit], e1)
+        plain /= np.linalg.norm(plain, axis=1, keepdims=True)  # never short: e1 is near the edge
         e3 = _unit_or(_across(np.sum(weights * smooth[edges[hit]], axis=1), e1), plain)
         return feet, e1, np.cross(e3, e1), e3
 
@@ -135,10 +135,10 @@ def _search(V, F, diagonal):
         away = np.flatnonzero(squares > (SAME * diagonal) ** 2)
         other = tree.squared_distance(V, F, points[away] + ASIDE * diagonal)[1]
         away, other = away[other != hit[away]], other[other != hit[away]]
-        feet_there = _feet(points[away], V[F[other]])
-        far = np.linalg.norm(feet_there - points[away], axis=1)
+        there = _feet(points[away], V[F[other]])
+        far = np.linalg.norm(there - points[away], axis=1)
         tied = far <= np.sqrt(squares[away]) + SAME * diagonal
-        hit[away[tied]], feet[away[tied]] = other[tied], feet_there[tied]
+        hit[away[tied]], feet[away[tied]] = other[tied], there[tied]
         return hit, feet
 
     return nearest

@@ -97,7 +97,7 @@ def _counted(done):
 def merge(V: np.ndarray, F: np.ndarray, tolerance: float) -> tuple:
     """(faces F with the first of the vertices at each place only, how many others went).
 
-    tolerance: how close vertices are at one place, as a part of the bounding box of the faces.
+    tolerance: how far vertices at one place may be apart, in diagonals of the faces' box.
     """
     used, corner = np.unique(F, return_inverse=True)
     points, place = np.unique(V[used] + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
@@ -156,10 +156,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
 
 
 def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """The number (3 t,) of each corner's fan: triangles around a vertex, joined by edges.
-
-    twin: the opposite half-edges, -1 where the fans end.
-    """
+    """The number (3 t,) of each corner's fan around its vertex; twin: -1 where the fans end."""
     after = np.roll(np.arange(T.size).reshape(-1, 3), -1, axis=1).ravel()
     half = np.flatnonzero(twin >= 0)
     return components(T.size, half, after[twin[half]])
@@ -188,8 +185,7 @@ def _without_chords(V, T, loops):
 
     A boundary can then become a straight line, and no triangle with it.
     """
-    one = mesh.pairs(T)[:, 0]
-    ends = np.stack([T.ravel()[one], np.roll(T, -1, axis=1).ravel()[one]], axis=1)
+    ends = np.stack(mesh.half_edges(T), axis=1)[mesh.pairs(T)[:, 0]]
     chords = np.concatenate([ends[np.isin(ends, loop).all(axis=1)] for loop in loops])
     for number, (a, b) in enumerate(chords, start=len(V)):
         both = (a == T).any(axis=1) & (b == T).any(axis=1)
@@ -210,10 +206,7 @@ def place(point: np.ndarray) -> str:
 
 
 def weld(V: np.ndarray, F: np.ndarray) -> tuple:
-    """The mesh with equal points as one vertex, in the order of their first use: (V, F).
-
-    V: (n, 3), F: integers of any shape.  Unused vertices go.
-    """
+    """(V, F), equal points as one vertex, in the order of their first use; F of any shape."""
     _, first, place = np.unique(V[F.ravel()] + 0.0, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return V[F.ravel()[first[order]]], np.argsort(order)[place.ravel()].reshape(F.shape)

@@ -79,14 +79,17 @@ def prepare(
     weights = _checked_weights(weights or Weights(), len(V))
     boundary = _boundary(Q, polygons)
     mobility = _mobility(mobility, fixed, boundary, len(V))
-    if reference is not None:
-        _check_distance(V, reference)
-    elif on_surface:
+    if on_surface and reference is None:
         raise ValueError("on_surface=True needs a reference surface")
-    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
+    if reference is not None:
+        apart = np.linalg.norm(V - reference.closest(V)[0], axis=1).mean() / reference.diagonal
+        if not apart < FAR:
+            far = f"{apart:.3g} of its diagonal on average, at most {FAR} is wanted"
+            raise ValueError(f"the reference is far away, {far}: move or scale one of the two")
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     lengths = float(edges.mean()), 8 * np.spacing(np.abs(V).max()) / edges.min()
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
+    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
     return Problem(V, Q, *kept, mesh.face_neighbours(Q), *lengths, *factors, quadratic, {})
 
@@ -154,14 +157,6 @@ def _boundary(Q, polygons):
             words = f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must"
             raise ValueError(f"{words} be all the vertices of one boundary loop")
     return np.concatenate([np.zeros(0, dtype=np.int64), *loops.values()])
-
-
-def _check_distance(V, reference):
-    feet, _ = reference.closest(V)
-    apart = np.linalg.norm(V - feet, axis=1).mean() / reference.diagonal
-    if not apart < FAR:
-        far = f"{apart:.3g} of its diagonal on average, at most {FAR} is wanted"
-        raise ValueError(f"the reference is far away, {far}: bring both into one coordinate system")
 
 
 def _fairness(triples, weights, count):

@@ -63,10 +63,7 @@ def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
 
 
 class Factor:
-    """`factor` for one matrix after the other with the same pattern: ordered only once.
-
-    points (k, d): where the unknowns are, an equal number in a row at each point.
-    """
+    """`factor` for matrices of one pattern, ordered only once; points: see `nested_dissection`."""
 
     def __init__(self, points):
         self.points, self.order = points, None
@@ -109,9 +106,9 @@ def _banded(A):
 def nested_dissection(points: np.ndarray, A: csr_array) -> np.ndarray:
     """A permutation of the rows of A that keeps its factors sparse, by halving again and again.
 
-    points (k, d): where the unknowns are, A (b k, b k): b in a row at each point.  Of each
-    half of the points, those with a neighbour in the other half come last.  Twice as fast
-    as minimum degree from some 10 000 points on; it depends on the pattern of A only.
+    points (k, d): where the unknowns are, A (b k, b k): b in a row at each point; only its
+    pattern counts.  Of each half of the points, those with a neighbour in the other half come
+    last.  Twice as fast as minimum degree from some 10 000 points on.
     """
     count = len(points)
     block = A.shape[0] // count
