@@ -100,8 +100,8 @@ def _boundary(V, edges, smooth, face, diagonal):
 
 def _vertex_tangents(along, after):
     """Tangents (e, 2, 3) at both ends of the boundary edges, the edge's own at corners."""
-    before, here = np.argsort(after), np.arange(len(after))
-    one, two = along[np.stack([before, here], axis=1)], along[np.stack([here, after], axis=1)]
+    one = np.stack([along[np.argsort(after)], along], axis=1)
+    two = np.stack([along, along[after]], axis=1)
     smooth = np.einsum("ecx,ecx->ec", one, two) > np.cos(CORNER) - 1e-9  # 30 degrees are no more
     mean = one + two
     mean /= np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300)
@@ -159,8 +159,8 @@ def _feet(p, corners):
     a, b = corners, np.roll(corners, -1, axis=1)
     along = np.einsum("kcx,kcx->kc", p[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=2)
     feet = a + np.clip(along, 0, 1)[..., None] * (b - a)
-    side = np.argmin(np.linalg.norm(feet - p[:, None], axis=2), axis=1)
-    feet = feet[np.arange(len(p)), side]
+    nearest = np.argmin(np.linalg.norm(feet - p[:, None], axis=2), axis=1)
+    feet = feet[np.arange(len(p)), nearest]
     if corners.shape[1] == 2:
         return feet
     weights = _barycentric(p, *np.moveaxis(corners, 1, 0))

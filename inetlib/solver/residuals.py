@@ -17,7 +17,7 @@ SIGNS = np.array([[-1, 0, 1, 0], [0, -1, 0, 1], [-1, -1, 1, 1], [1, -1, -1, 1]],
 
 
 def _vectors(x, rows):
-    """The chosen vectors of `SIGNS`, a list of (f, 3) arrays."""
+    """The chosen vectors of `SIGNS`, (v, f, 3)."""
     return np.einsum("vc,fcx->vfx", SIGNS[rows], x[:, :12].reshape(-1, 4, 3))
 
 

@@ -227,10 +227,7 @@ def preconditioner(A: np.ndarray) -> Callable:
 
 def _scale(A):
     """Entries 00, 10, 11 of the inverse Cholesky factors of the blocks of J J^T, (3, m, n)."""
-    d00, d01, d11 = (
-        2 * sum(np.einsum("kij,kij->ij", a[r], a[s]) for a in A)
-        for r, s in ((0, 0), (0, 1), (1, 1))
-    )
+    (d00, d01), (_, d11) = 2 * sum(np.einsum("rkij,skij->rsij", a, a) for a in A)
     i00, i11 = 1 / np.sqrt(d00), 1 / np.sqrt(d11 - d01**2 / d00)
     return np.stack([i00, -i11 * d01 / d00, i11])
 
