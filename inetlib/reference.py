@@ -11,7 +11,9 @@ from . import repair, surfaces, ties
 from .mesh import half_edges, opposites, triangles
 
 CORNER = np.radians(30)  # a boundary that turns by more at a vertex has a corner there
-ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])  # of the diagonal: no symmetry of any surface
+# of the diagonal, no symmetry of any surface: of equally near triangles the one counts that is
+# nearest when the point moves so far, not the one that rounding would choose
+ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])
 SAME = 1e-11  # of the diagonal: distances that differ by less are equal
 SAMPLES = 200  # a side of the domain; the nearest sample is where the search starts
 MARGIN = 0.1  # how far an analytic surface goes on beyond its domain, as a part of the domain
@@ -121,16 +123,12 @@ def _unit_or(vectors, other):
 
 
 def _search(V, F, diagonal):
-    """A function of points (k, 3): the nearest triangle or segment of F (k,), the foot (k, 3).
-
-    Over a valley several are equally near, which of them would hang on rounding: there it is
-    the one that is nearest when the point moves a little ASIDE.
-    """
+    """A function of points (k, 3): the nearest triangle or segment of F (k,), the foot (k, 3)."""
     tree = igl.AABB()
     tree.init(V, F)
 
     def nearest(points):
-        points = _points(points)
+        points = _points(points)  # over a valley several are equally near: see ASIDE
         squares, hit, feet = tree.squared_distance(V, F, points)
         away = np.flatnonzero(squares > (SAME * diagonal) ** 2)
         other = tree.squared_distance(V, F, points[away] + ASIDE * diagonal)[1]
@@ -279,10 +277,7 @@ class _Patch:
         return new, np.where(far, 0, np.linalg.norm(feet - start, axis=1))
 
     def _newton_step(self, off, st):
-        """The step (k, 2) towards the minimum of off^2 / 2, off = foot - point.
-
-        Gauss-Newton's where Newton's leads to no minimum; what would leave the domain stays.
-        """
+        """The step (k, 2) to the minimum of off^2 / 2, off = foot - point, inside the domain."""
         first, second = self._derivatives(st)
         g = np.einsum("kx,ikx->ki", off, first)
         gram = np.einsum("ikx,jkx->kij", first, first)
@@ -291,7 +286,7 @@ class _Patch:
         stuck = ((st <= -self.beyond) & (g > 0)) | ((st >= 1 + self.beyond) & (g < 0))
         g = np.where(stuck, 0, g)
         convex = (np.linalg.det(hessian) > 1e-6 * trace**2) & (bend > 0)
-        matrix = np.where(convex[:, None, None], hessian, gram)
+        matrix = np.where(convex[:, None, None], hessian, gram)  # else Gauss-Newton's step
         cut = stuck.any(axis=1)  # only one parameter is left, if any
         hessian, gram = hessian[cut] * np.eye(2), gram[cut] * np.eye(2)
         matrix[cut] = np.where(hessian > 1e-3 * gram, hessian, gram)
@@ -299,10 +294,8 @@ class _Patch:
         return np.clip(-np.linalg.solve(matrix, g[..., None])[..., 0], -0.05, 0.05)
 
     def _derivatives(self, st):
-        """First (2, k, 3) and second (2, 2, k, 3) derivatives; the second ones are rough.
-
-        Where the surface ends the stencils stay inside; the second ones then continue the first.
-        """
+        """First (2, k, 3) and second (2, 2, k, 3) derivatives; the second ones are rough."""
+        # where the surface ends the stencils stay inside, and the second ones continue the first
         c = st if self.beyond else np.clip(st, 3 * STEP, 1 - 3 * STEP)
         (s, t), h, X = c.T, STEP, self.point
         middle = X(s, t)

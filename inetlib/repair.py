@@ -51,21 +51,19 @@ def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     """
     T = triangulate(V, F)
     F = F.tolist() if isinstance(F, np.ndarray) else F
-    for tolerance in (NEAR, SAME, None) if merge else (None,):
-        try:
-            V, T, said = _oriented(V, T, tolerance)
-            break
-        except ValueError as error:
-            reason = error
-    else:
-        raise reason
-    if merge and tolerance is None:
-        said.insert(0, f"duplicate vertices were not merged: {reason}")
     first = {
         "faces with more than three corners cut into triangles": sum(len(f) > 3 for f in F),
         "faces without three different corners dropped": sum(len(set(f)) < 3 for f in F),
     }
-    return V, T, _counted(first) + said
+    said = _counted(first)
+    for tolerance in (NEAR, SAME) if merge else ():
+        try:
+            V, T, more = _oriented(V, T, tolerance)
+            return V, T, said + more
+        except ValueError as error:
+            refused = f"duplicate vertices were not merged: {error}"
+    V, T, more = _oriented(V, T)
+    return V, T, [*said, refused, *more] if merge else said + more
 
 
 def _oriented(V, T, tolerance=None):
@@ -181,10 +179,7 @@ def topology(T: np.ndarray) -> list:
 
 
 def _without_chords(V, T, loops):
-    """The same surface, edges inside that join two vertices of one boundary loop halved.
-
-    A boundary can then become a straight line, and no triangle with it.
-    """
+    """(V, T), inner edges between vertices of one loop halved: the loop can become straight."""
     ends = np.stack(mesh.half_edges(T), axis=1)[mesh.pairs(T)[:, 0]]
     chords = np.concatenate([ends[np.isin(ends, loop).all(axis=1)] for loop in loops])
     for number, (a, b) in enumerate(chords, start=len(V)):
@@ -235,10 +230,7 @@ def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
 
 
 def _ears(P):
-    """Triangles (k - 2, 3) of one polygon with corners P (k, 3): the shortest good cut first.
-
-    Of equally short ones the first; three corners on a line are no ear.
-    """
+    """Triangles (k - 2, 3) of a polygon P (k, 3), the shortest good cut first; no straight ears."""
     normal = np.cross(P - P[0], np.roll(P, -1, axis=0) - P[0]).sum(axis=0)
     normal /= np.linalg.norm(normal) or 1.0
     little = FLAT * np.sum(np.ptp(P, axis=0) ** 2)

@@ -149,13 +149,10 @@ def run(log: Log, goals: list[Goal], limit: int, solve: Callable | None = None) 
 
 
 def _system(given, lay, goal, x, diagonal):
-    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility.
-
-    diagonal: the unit of the lengths in x, None without the energies of Sec. 6.3.
-    """
+    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility."""
     residual, H = hard(lay, goal, x)
     A, g, count = H.T @ H, H.T @ residual, given.V.size
-    if diagonal:
+    if diagonal:  # the unit of the lengths in x; None without the energies of Sec. 6.3
         K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
         K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
         A = A + coo_array((K.data, K.coords), shape=A.shape)

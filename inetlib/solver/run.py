@@ -204,10 +204,7 @@ def _freedom(A, b):
 
 
 def _metric(problem, V):
-    """(free, root, lift): J -> J R, the matrix R, and the way onto the surface.
-
-    R R^T tells how freely the coordinates move: by the mobility, on a surface along it.
-    """
+    """(J -> J R, R, the way onto the surface); R R^T tells how freely the coordinates move."""
     root = np.sqrt(problem.mobility)
     if not problem.on_surface:
         root = np.repeat(root, 3)
