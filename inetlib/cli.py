@@ -231,7 +231,7 @@ def _cover(given):
         progress=_progress(given),
     )
     about = found.report
-    notes = _repairs(given.surface, [*about.notes, *repaired, *about.repairs])
+    notes = _repairs(given.surface, [*repaired, *about.repairs])
     more = {"converged": about.converged, "message": about.message}
     return _finish(given, found.V, found.Q, (), about, notes, more)
 

@@ -140,7 +140,7 @@ def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
     flat = ~(area > FLAT * np.sum(sides**2, axis=2).max(axis=1))
     if flat.any():
         corners = T[np.argmax(flat)].tolist()
-        raise ValueError(f"the triangle {corners} near {place(V[corners[0]])} has no area")
+        raise ValueError(f"the triangle {corners} near {_place(V[corners[0]])} has no area")
     return normal / area[:, None]
 
 
@@ -149,7 +149,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
     if pinched.size:
-        k, near = pinched[0], place(V[pinched[0]])
+        k, near = pinched[0], _place(V[pinched[0]])
         raise ValueError(f"the faces at vertex {k}, near {near}, form two fans: not a manifold")
 
 
@@ -195,8 +195,7 @@ def components(count: int, one: np.ndarray, two: np.ndarray) -> np.ndarray:
     return connected_components(graph, directed=False)[1]
 
 
-def place(point: np.ndarray) -> str:
-    """A point in words."""
+def _place(point):
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
@@ -242,7 +241,7 @@ def _ears(P):
         inside = np.cross(sides[:, :, None], P[left] - P[ears][:, :, None]) @ normal >= -little
         good = np.flatnonzero(turned & (inside.all(axis=1).sum(axis=1) == 3))  # its own corners
         if not good.size:
-            raise ValueError(f"the face at {place(P[0])} has no area, or sides that cross")
+            raise ValueError(f"the face at {_place(P[0])} has no area, or sides that cross")
         cuts = np.linalg.norm(P[ears[good, 2]] - P[ears[good, 0]], axis=1)
         k = good[ties.first_smallest(cuts)]
         found.append(ears[k])

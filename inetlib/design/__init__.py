@@ -99,9 +99,7 @@ def cover(
         found = survey(net, layer.Q, theta, theta0, goal, flat)
     if done and found.distance_max > AWAY:
         words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
-        triangles = np.linalg.norm(surface.V[surface.F[:, 1]] - surface.V[surface.F[:, 0]], axis=1)
-        coarse = triangles.mean() > found.edge_mean
-        words += ": its triangles are coarser" if coarse else ": ask for more quads"
+        words += ": ask for more quads"
     found = found._replace(converged=done, message=words, winding=layer.winding)
     return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
 
