@@ -159,9 +159,6 @@ class Quality(NamedTuple):
 
     flips: int  # how many faces are flipped
     flipped: np.ndarray  # their normal d1 x d2 points against the mean one of their neighbours
-    darts: int  # how many faces are not convex
-    nonconvex: np.ndarray  # seen along d1 x d2 one of their corners turns the wrong way
-    corner: float  # the smallest angle at a corner, radians
     area_ratio: float  # smallest / largest area |d1 x d2| / 2
     aspect: float  # the largest ratio of the longer to the shorter medial line
     planarity: float  # the largest distance between the diagonals over their mean length
@@ -176,29 +173,7 @@ def quality(V: ArrayLike, Q: ArrayLike) -> Quality:
     v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
     apart = (np.abs(_dot(v2 - v1, normal)) / ((length1 + length2) / 2)).max()
     numbers = twice_area.min() / twice_area.max(), aspect, apart
-    bent = nonconvex(V, Q)
-    corner = float(np.min(corners(V, Q)))
-    return Quality(len(turned), turned, len(bent), bent, corner, *map(float, numbers))
-
-
-def corners(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
-    """The angles between the edges at the corners v1 ... v4 of every face: (f, 4), in [0, pi]."""
-    V, Q = mesh.check_arrays(V, Q)
-    edges = [V[Q[:, k - 3]] - V[Q[:, k]] for k in range(4)]
-    return np.stack([_angle(-edges[k - 1], edges[k]) for k in range(4)], axis=1)
-
-
-def nonconvex(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
-    """The faces that are darts: seen along d1 x d2, their diagonals do not cross.
-
-    The angles know nothing of them, as they do not see where the diagonals lie.  Paper: B12.
-    """
-    d1, d2, _, _ = vectors(V, Q)
-    v1, v2, v3, v4 = np.moveaxis(np.asarray(V, dtype=float)[np.asarray(Q)], 1, 0)
-    normal = _cross(d1, d2)
-    apart = (v2 + v4 - v1 - v3) / 2  # between the middles of the diagonals
-    away = [np.abs(_dot(_cross(apart, d), normal)) for d in (d1, d2)]
-    return np.flatnonzero(np.maximum(*away) > (0.5 + 1e-9) * _dot(normal, normal))
+    return Quality(len(turned), turned, *map(float, numbers))
 
 
 def flipped(V: ArrayLike, Q: ArrayLike, neighbours: np.ndarray | None = None) -> np.ndarray:

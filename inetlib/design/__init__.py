@@ -142,5 +142,5 @@ def _faults(result, Q, area, goal):
 
 
 def _deviation(result):
-    """The largest deviation of an angle in the net returned, infinite if faces are faulty."""
-    return min((step.deviation for step in result.history if not step.key[0]), default=np.inf)
+    """The largest deviation of an angle in the net returned, infinite if faces are flipped."""
+    return min((step.deviation for step in result.history if not step.flips), default=np.inf)

@@ -11,7 +11,6 @@ from ..reference import Reference
 from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
-SHAPE = "flips", "darts", "corner", "area_ratio", "aspect", "planarity"
 
 
 class Report(NamedTuple):
@@ -29,9 +28,7 @@ class Report(NamedTuple):
     mu: measure.Spread
     theta: measure.Spread
     theta0: measure.Spread
-    flips: int  # this and the next five: see `measure.quality`
-    darts: int
-    corner: float
+    flips: int  # this and the next three: see `measure.quality`
     area_ratio: float
     aspect: float
     planarity: float
@@ -78,9 +75,9 @@ def report(
     values = *measure.ratios(V, Q), *measure.angles(V, Q)
     spreads = map(measure.spread, values, wanted.values())
     quality = measure.quality(V, Q)
-    shape = (getattr(quality, name) for name in SHAPE)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
+    shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
     counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
     return Report(*counts, wanted, *spreads, *shape, *sizes)

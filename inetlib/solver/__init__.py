@@ -87,10 +87,9 @@ def optimize(
     strict       raise `NotConverged` instead of returning a net that is off
     progress     show a bar; callback(step, V) after every step may return False to stop
 
-    A run that ends off its angles is repeated with smaller strides, one that ends with flipped
-    faces or darts with `run.coupled_step`; of all nets the one with the fewest of these, then
-    the smallest deviation, is returned.  `converged`: all faces have their angles, none is
-    flipped or a dart.  Bad input is a ValueError.
+    A run that ends off its angles or with flipped faces is repeated with smaller strides; of
+    all nets the one with the fewest flips, then the smallest deviation, is returned.
+    `converged`: all faces have their angles, none is flipped.  Bad input is a ValueError.
 
     >>> from inetlib import surfaces
     >>> found = optimize(*surfaces.freeform_patch(8, 8), theta=1.2, theta0=1.3)
@@ -117,11 +116,10 @@ def optimize(
     given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
-        for coupled, factor in _runs(log, factors, ours and not on_surface):
+        for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
             goals = run.way(given, via, stride * factor)
             if ours:
-                run.ratio(log, goals, shape_steps, limit, coupled)
+                run.ratio(log, goals, shape_steps, limit)
             else:
                 guided.run(log, goals, limit, spsolve if formulation == "paper" else None)
             if log.done or len(log.history) > limit:
@@ -132,16 +130,6 @@ def optimize(
     return result
 
 
-def _runs(log, factors, coupling):
-    """(coupled, factor of the stride) of one run after the other, as long as they are wanted."""
-    for factor in factors:
-        yield False, factor
-        if log.history[-1].deviation <= log.tolerance:
-            break  # the angles are right, some faces are not: smaller strides do not help
-    if coupling and log.history[-1].key[0]:
-        yield from ((True, factor) for factor in factors)
-
-
 def _check_choice(name, value, allowed):
     if value not in allowed:
         raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
@@ -150,19 +138,19 @@ def _check_choice(name, value, allowed):
 def _result(log, ours):
     """The `Result` of the best net."""
     given, count = log.given, len(log.history) - 1
-    best, V, s = log.best
-    good = bool(best.key <= (0, log.tolerance))
+    (flips, deviation), V, s = log.best
+    good = bool(deviation <= log.tolerance and flips == 0)
     if good:
         words = f"converged in {count} steps"
     elif log.stopped:
         words = f"stopped by the caller after {count} steps"
-    elif best.key[0]:
-        words = f"not converged in {count} steps, every net on the way had flipped faces or darts"
+    elif flips:
+        words = f"not converged in {count} steps, every net on the way had flipped faces"
     else:
-        words = f"not converged in {count} steps, this is the best net without flips and darts"
+        words = f"not converged in {count} steps, this is the best net without flipped faces"
     shape = map(float, (*np.exp(logs(given.goal, s)[0]), *angles(given.goal, s)))
     sizes = V.size + len(s), 2 * len(given.Q)
     if not ours:
         sizes = guided.size(given.Q, len(V), given.goal)
-    message = f"{words}: {best.words}"
+    message = f"{words}: at most {np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
     return Result(V, *shape, log.history, good, message, given.seconds, sizes)

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import bsr_array, csr_array, diags_array, kron
+from scipy.sparse import bsr_array, csr_array, diags_array
 from tqdm import tqdm
 
 from .. import measure
@@ -18,8 +18,6 @@ from .problem import Problem, shape
 Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
-LOOSE = 1e-6  # weight of the size of a coupled step against its equations
-COUPLING = 10  # of every other vertex and the rest, in that size
 STARTS = {
     "medials": {"theta0": np.pi / 2},
     "diagonals": {"theta": np.pi / 2},
@@ -34,6 +32,8 @@ WORSE = 3  # angle steps in a row without progress end a run
 class Step(NamedTuple):
     """One iteration and the net after it."""
 
+    """One iteration and the net after it."""
+
     kind: str  # "start", "shape", "angle" or "guided"
     goal: Goal  # of this step
     residual: float  # sum of the squared residuals of the formulation's equations
@@ -43,23 +43,11 @@ class Step(NamedTuple):
     theta0_mean: float
     size: float  # the longest way of a vertex
     flips: int  # flipped faces
-    darts: int  # faces that are not convex
 
     @property
     def deviation(self) -> float:
         """The larger of theta_max and theta0_max."""
         return max(self.theta_max, self.theta0_max)
-
-    @property
-    def key(self) -> tuple[int, float]:
-        """How bad the net is: (faces flipped or not convex, deviation), the smaller the better."""
-        return self.flips + self.darts, self.deviation
-
-    @property
-    def words(self) -> str:
-        """The key in words."""
-        off = f"at most {np.degrees(self.deviation):.3g} degrees off"
-        return f"{off}, {self.flips} flipped faces, {self.darts} darts"
 
 
 @contextmanager
@@ -90,8 +78,8 @@ def judge(
         found = np.log(np.stack(measure.ratios(V, Q)))
         residual = np.sum((found - logs(wanted, s)[0][:, None]) ** 2)
     spread = (float(f(x)) for x in off for f in (np.max, np.mean))
-    faults = len(measure.flipped(V, Q, neighbours)), len(measure.nonconvex(V, Q))
-    return Step._make([*step, float(residual), *spread, float(size), *faults])
+    flips = len(measure.flipped(V, Q, neighbours))
+    return Step._make([*step, float(residual), *spread, float(size), flips])
 
 
 def equations(
@@ -130,47 +118,15 @@ def shape_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
         A = A + J.T @ J
         diagonal = A.diagonal() + np.repeat(problem.weights.closeness, 3)
         A.setdiag(diagonal + REGULAR * diagonal.mean())
+        right = np.column_stack([root * g + J.T @ f, J.T @ G])
     with timed(problem.seconds, "factor"):
         solve = problem.shape_factor(A)
     with timed(problem.seconds, "solve"):
-        y, ds = _least(solve, J, f, G, root * g)
-    return (root * y).reshape(-1, 3), ds
-
-
-def _least(solve, J, f, G, g):
-    """(y, ds) with the least |f + J y - G ds|^2 + other energies of y, half of their slope g."""
-    right = np.column_stack([g + J.T @ f, J.T @ G])
-    y = solve(right)
-    B = right[:, 1:].T
-    ds = _freedom(G.T @ G - B @ y[:, 1:], G.T @ f - B @ y[:, 0])
-    return y[:, 1:] @ ds - y[:, 0], ds
-
-
-def coupled_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
-    """(change of V, change of s): a smallest change to the angles that makes no darts.
-
-    The angles see diagonals only, so that shifting every other vertex costs nothing (darts).
-    Here the size of a change d is sum |d|^2 / mobility over the vertices, plus COUPLING times
-    sum |d1 - d2 + d3 - d4|^2 / 4 over the corners of the faces, all in local lengths; it has
-    the small weight LOOSE against the equations.  Paper: B12.
-    """
-    with timed(problem.seconds, "assemble"):
-        f, J, G = equations(problem, V, goal, s)
-        root = np.repeat(np.sqrt(problem.mobility), 3)
-        J = sparse.scaled(J, root)
-        long = np.linalg.norm(np.stack(measure.vectors(V, problem.Q)[:2]), axis=2).mean(axis=0)
-        corners = problem.Q.ravel()
-        reach = np.bincount(corners, np.repeat(long, 4)) / np.bincount(corners)
-        twist = np.array([0.5, -0.5, 0.5, -0.5]) / long[:, None, None]
-        T = kron(sparse.rows(twist, problem.Q, len(V)), np.eye(3), format="csr")
-        T = sparse.scaled(T, root)
-        A = LOOSE * (COUPLING * (T.T @ T) + diags_array(np.repeat(reach, 3) ** -2)) + J.T @ J
-    with timed(problem.seconds, "factor"):
-        solve = problem.shape_factor(A.tocsr())
-    with timed(problem.seconds, "solve"):
-        y, ds = _least(solve, J, f, G, 0)
-        more, further = _least(solve, J, f + J @ y - G @ ds, G, 0)  # LOOSE is not so small
-    return (root * (y + more)).reshape(-1, 3), ds + further
+        y = solve(right)
+        B = right[:, 1:].T
+        ds = _freedom(G.T @ G - B @ y[:, 1:], G.T @ f - B @ y[:, 0])
+        d = root * (y[:, 1:] @ ds - y[:, 0])
+    return d.reshape(-1, 3), ds
 
 
 def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
@@ -219,7 +175,7 @@ def _metric(problem, V):
 class Log:
     """The history of an optimisation and its best net.
 
-    best: (step, V, s) of the best net so far, see `Step.key`; `stopped` by the callback.
+    best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback.
     """
 
     def __init__(self, given, tolerance, progress, callback):
@@ -245,8 +201,9 @@ class Log:
             except ValueError:
                 return None
         self.history.append(step)
-        if self.best is None or step.key < self.best[0].key:
-            self.best = step, V, s
+        key = step.flips, step.deviation
+        if self.best is None or key < self.best[0]:
+            self.best = key, V, s
         self.bar.set_description(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
         self.bar.update()
         if kind != "start" and self.callback is not None:
@@ -255,8 +212,9 @@ class Log:
 
     @property
     def done(self) -> bool:
-        """Whether the last net has its angles and no faulty face, or a caller said stop."""
-        return self.stopped or self.history[-1].key <= (0, self.tolerance)
+        """Whether the last net has its angles and no flipped face, or a caller said stop."""
+        last = self.history[-1]
+        return self.stopped or (last.deviation <= self.tolerance and last.flips == 0)
 
 
 def nearest(goal: Goal, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
@@ -281,10 +239,10 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
     return first + leg(given.goal)
 
 
-def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float, coupled: bool) -> None:
+def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float) -> None:
     """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
 
-    goals: of the first steps, see `way`; limit: the most steps; coupled: see `coupled_step`.
+    goals: of the first steps, see `way`; limit: the most steps.
     """
     given, final = log.given, log.given.goal
     plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
@@ -296,7 +254,7 @@ def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float, coupled: 
             return
         if goal is not before:
             before, s = goal, nearest(goal, V, given.Q)
-        take = shape_step if kind == "shape" else coupled_step if coupled else angle_step
+        take = shape_step if kind == "shape" else angle_step
         d, ds = take(given, V, goal, s)
         parts = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
         part = next(parts, 0.0)
