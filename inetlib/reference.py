@@ -8,10 +8,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from . import repair, surfaces, ties
-from .mesh import opposites, triangles
+from .mesh import half_edges, opposites, triangles
 
 CORNER = np.radians(30)  # a boundary that turns by more at a vertex has a corner there
-ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])  # of the diagonal: no symmetry of any surface
+# of the diagonal, no symmetry of any surface: of equally near triangles the one counts that is
+# nearest when the point moves so far, not the one that rounding would choose
+ASIDE = 1e-9 * np.array([0.2718, 0.5772, 0.7691])
 SAME = 1e-11  # of the diagonal: distances that differ by less are equal
 SAMPLES = 200  # a side of the domain; the nearest sample is where the search starts
 MARGIN = 0.1  # how far an analytic surface goes on beyond its domain, as a part of the domain
@@ -29,15 +31,13 @@ class Reference(NamedTuple):
     closest(points)   closest points and unit normals of the surface there, each (k, 3)
     boundary(points)  closest points on the boundary and an orthonormal frame e1, e2, e3
                       there, each (k, 3): e1 along the boundary, e3 normal to the surface
-    diagonal          of the bounding box
-    V, F              the triangles, None for a parametric reference
     """
 
     closest: Callable
-    diagonal: float
+    diagonal: float  # of the bounding box
     boundary: Callable = no_boundary
-    V: np.ndarray | None = None
-    F: np.ndarray | None = None
+    V: np.ndarray | None = None  # None for a parametric reference
+    F: np.ndarray | None = None  # triangles
 
     @property
     def has_boundary(self) -> bool:
@@ -48,19 +48,18 @@ class Reference(NamedTuple):
 def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
     """The `Reference` of a mesh of triangles (f, 3) or quads (f, 4) with vertices V (n, 3).
 
-    A quad is two triangles, cut along its shorter diagonal.  Closest points are exact;
-    normals are interpolated between the vertex normals (weighted by the angles of the faces),
-    so that they have no jump at an edge, and are those of the face where that degenerates.
-    So is e1 along the boundary, with the mesh on its left; at corners, where the boundary
-    turns by more than 30 degrees, it is the direction of the segment hit (at the corner
-    itself, of the one that leaves it).  ValueError for faces that are no oriented manifold,
-    and for triangles without area.
+    A quad is two triangles, cut along its shorter diagonal.  Closest points are exact; normals
+    are interpolated between the vertex normals (weighted by the angles of the faces), and those
+    of the face where that degenerates.  So is e1 along the boundary, with the mesh on its left;
+    at corners, where the boundary turns by more than 30 degrees, it is the direction of the
+    segment hit (at the corner itself, of the one that leaves it).  ValueError for faces that
+    are no oriented manifold, and for triangles without area.
     """
     V, F = (a.copy() for a in triangles(V, F))  # later changes of V do not change the tree
     face, twin = repair.normals(V, F), opposites(F)
     repair.require_single_fans(V, F, twin)
-    smooth = igl.per_vertex_normals(V, F, igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE)
-    smooth = np.nan_to_num(smooth)  # unused vertices, and normals that cancel
+    by_angle = igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_ANGLE
+    smooth = np.nan_to_num(igl.per_vertex_normals(V, F, by_angle))  # unused; normals that cancel
     diagonal = float(np.linalg.norm(np.ptp(V[np.unique(F)], axis=0)))
     nearest = _search(V, F, diagonal)
 
@@ -71,7 +70,7 @@ def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
         return feet, _unit_or(normals, face[hit])
 
     half = np.flatnonzero(twin < 0)
-    edges = np.stack([F.ravel()[half], np.roll(F, -1, axis=1).ravel()[half]], axis=1)
+    edges = np.stack(half_edges(F), axis=1)[half]
     rim = _boundary(V, edges, smooth, face[half // 3], diagonal) if half.size else no_boundary
     return Reference(closest, diagonal, rim, V, F)
 
@@ -90,11 +89,11 @@ def _boundary(V, edges, smooth, face, diagonal):
         hit, feet = nearest(points)
         t = np.einsum("ij,ij->i", feet - V[edges[hit, 0]], along[hit]) / length[hit]
         end = t > 1 - ties.TIE  # as near to the next segment
-        hit, t = np.where(end, after[hit], hit), np.where(end, 0, t)
-        weights = np.clip(np.stack([1 - t, t], axis=1), 0, 1)[..., None]
+        hit, t = np.where(end, after[hit], hit), np.where(end, 0, np.clip(t, 0, 1))
+        weights = np.stack([1 - t, t], axis=1)[..., None]
         e1 = _unit_or(np.sum(weights * tangents[hit], axis=1), along[hit])
-        plain = _across(face[hit], e1)  # never short: e1 is close to the edge
-        plain /= np.linalg.norm(plain, axis=1, keepdims=True)
+        plain = _across(face[hit], e1)
+        plain /= np.linalg.norm(plain, axis=1, keepdims=True)  # never short: e1 is near the edge
         e3 = _unit_or(_across(np.sum(weights * smooth[edges[hit]], axis=1), e1), plain)
         return feet, e1, np.cross(e3, e1), e3
 
@@ -103,8 +102,8 @@ def _boundary(V, edges, smooth, face, diagonal):
 
 def _vertex_tangents(along, after):
     """Tangents (e, 2, 3) at both ends of the boundary edges, the edge's own at corners."""
-    before, here = np.argsort(after), np.arange(len(after))
-    one, two = along[np.stack([before, here], axis=1)], along[np.stack([here, after], axis=1)]
+    one = np.stack([along[np.argsort(after)], along], axis=1)
+    two = np.stack([along, along[after]], axis=1)
     smooth = np.einsum("ecx,ecx->ec", one, two) > np.cos(CORNER) - 1e-9  # 30 degrees are no more
     mean = one + two
     mean /= np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300)
@@ -124,24 +123,20 @@ def _unit_or(vectors, other):
 
 
 def _search(V, F, diagonal):
-    """A function of points (k, 3): the nearest triangle or segment of F (k,), the foot (k, 3).
-
-    Over a valley several are equally near, which of them would hang on rounding: there it is
-    the one that is nearest when the point moves a little ASIDE.
-    """
+    """A function of points (k, 3): the nearest triangle or segment of F (k,), the foot (k, 3)."""
     tree = igl.AABB()
     tree.init(V, F)
 
     def nearest(points):
-        points = _points(points)
+        points = _points(points)  # over a valley several are equally near: see ASIDE
         squares, hit, feet = tree.squared_distance(V, F, points)
         away = np.flatnonzero(squares > (SAME * diagonal) ** 2)
         other = tree.squared_distance(V, F, points[away] + ASIDE * diagonal)[1]
         away, other = away[other != hit[away]], other[other != hit[away]]
-        feet_there = _feet(points[away], V[F[other]])
-        far = np.linalg.norm(feet_there - points[away], axis=1)
+        there = _feet(points[away], V[F[other]])
+        far = np.linalg.norm(there - points[away], axis=1)
         tied = far <= np.sqrt(squares[away]) + SAME * diagonal
-        hit[away[tied]], feet[away[tied]] = other[tied], feet_there[tied]
+        hit[away[tied]], feet[away[tied]] = other[tied], there[tied]
         return hit, feet
 
     return nearest
@@ -162,8 +157,8 @@ def _feet(p, corners):
     a, b = corners, np.roll(corners, -1, axis=1)
     along = np.einsum("kcx,kcx->kc", p[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=2)
     feet = a + np.clip(along, 0, 1)[..., None] * (b - a)
-    side = np.argmin(np.linalg.norm(feet - p[:, None], axis=2), axis=1)
-    feet = feet[np.arange(len(p)), side]
+    nearest = np.argmin(np.linalg.norm(feet - p[:, None], axis=2), axis=1)
+    feet = feet[np.arange(len(p)), nearest]
     if corners.shape[1] == 2:
         return feet
     weights = _barycentric(p, *np.moveaxis(corners, 1, 0))
@@ -174,8 +169,8 @@ def _feet(p, corners):
 def _barycentric(p, a, b, c):
     """Barycentric coordinates (k, 3) of the feet of points p in planes a, b, c, each (k, 3)."""
     u, v, w = b - a, c - a, p - a
-    products = ((u, u), (u, v), (v, v), (w, u), (w, v))
-    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", x, y) for x, y in products)
+    pairs = (u, u), (u, v), (v, v), (w, u), (w, v)
+    uu, uv, vv, wu, wv = (np.einsum("ij,ij->i", *pair) for pair in pairs)
     area = uu * vv - uv * uv
     second, third = (vv * wu - uv * wv) / area, (uu * wv - uv * wu) / area
     return np.stack([1 - second - third, second, third], axis=1)
@@ -185,7 +180,6 @@ def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = 
     """The `Reference` of the surface point(u, v) over u[0] <= u <= u[1], v[0] <= v <= v[1].
 
     point     takes two arrays of one shape, returns points (..., 3), smooth in u and v
-    u, v      the domain, two numbers each
     tangents  takes the same, returns the pair (X_u, X_v), each (..., 3); default: finite
               differences, for features of the surface wider than a tenth of the domain
 
@@ -193,8 +187,8 @@ def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = 
     1e-12 of the surface's size; of sheets closer to each other than the samples, another than
     the nearest may be hit.  The surface goes on for a tenth of the domain on all sides, if
     `point` does, else its last 0.15 % know their tangents to about 1e-6 only.  The normal at
-    a pole of the parametrisation is that of a point close by.  ValueError for an empty
-    domain, and for points that are not finite or make no surface.
+    a pole is that of a point close by.  ValueError for an empty domain, and for points that are
+    not finite or make no surface.
     """
     for name, pair in (("u", u), ("v", v)):
         if np.shape(pair) != (2,) or not (np.isfinite(pair).all() and pair[0] < pair[1]):
@@ -258,10 +252,9 @@ class _Patch:
         st = np.stack(np.divmod(self.tree.query(points)[1], SAMPLES + 1), axis=1) / SAMPLES
         busy = np.arange(len(points))
         for _ in range(50):
-            if not busy.size:
-                break
-            st[busy], moved = self._line_search(points[busy], st[busy])
-            busy = busy[moved > 1e-12 * self.size]  # the next step would be far smaller still
+            if busy.size:
+                st[busy], moved = self._line_search(points[busy], st[busy])
+                busy = busy[moved > 1e-12 * self.size]  # the next step would be far smaller still
         normals = np.cross(*self._derivatives(st)[0])
         pole = np.linalg.norm(normals, axis=1) < 1e-7 * self.area
         inside = st[pole] + 1e-5 * (0.5 - st[pole])  # at a pole the normal of a point close by
@@ -284,10 +277,7 @@ class _Patch:
         return new, np.where(far, 0, np.linalg.norm(feet - start, axis=1))
 
     def _newton_step(self, off, st):
-        """The step (k, 2) towards the minimum of off^2 / 2, off = foot - point.
-
-        Gauss-Newton's where Newton's leads to no minimum; what would leave the domain stays.
-        """
+        """The step (k, 2) to the minimum of off^2 / 2, off = foot - point, inside the domain."""
         first, second = self._derivatives(st)
         g = np.einsum("kx,ikx->ki", off, first)
         gram = np.einsum("ikx,jkx->kij", first, first)
@@ -296,7 +286,7 @@ class _Patch:
         stuck = ((st <= -self.beyond) & (g > 0)) | ((st >= 1 + self.beyond) & (g < 0))
         g = np.where(stuck, 0, g)
         convex = (np.linalg.det(hessian) > 1e-6 * trace**2) & (bend > 0)
-        matrix = np.where(convex[:, None, None], hessian, gram)
+        matrix = np.where(convex[:, None, None], hessian, gram)  # else Gauss-Newton's step
         cut = stuck.any(axis=1)  # only one parameter is left, if any
         hessian, gram = hessian[cut] * np.eye(2), gram[cut] * np.eye(2)
         matrix[cut] = np.where(hessian > 1e-3 * gram, hessian, gram)
@@ -304,10 +294,8 @@ class _Patch:
         return np.clip(-np.linalg.solve(matrix, g[..., None])[..., 0], -0.05, 0.05)
 
     def _derivatives(self, st):
-        """First (2, k, 3) and second (2, 2, k, 3) derivatives; the second ones are rough.
-
-        Where the surface ends the stencils stay inside; the second ones then continue the first.
-        """
+        """First (2, k, 3) and second (2, 2, k, 3) derivatives; the second ones are rough."""
+        # where the surface ends the stencils stay inside, and the second ones continue the first
         c = st if self.beyond else np.clip(st, 3 * STEP, 1 - 3 * STEP)
         (s, t), h, X = c.T, STEP, self.point
         middle = X(s, t)

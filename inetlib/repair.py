@@ -16,15 +16,12 @@ SAME = 1e-12  # of the bounding box: vertices closer than this are at one place
 
 
 class Clean(NamedTuple):
-    """A surface that can be covered: V (n, 3), triangles F (f, 3), oriented, and every vertex used.
+    """A surface that can be covered: oriented, and every vertex used."""
 
-    loops: the boundary loops, one for a disk, two for a ring; repairs: what was done, sentences.
-    """
-
-    V: np.ndarray
-    F: np.ndarray
-    loops: list
-    repairs: list
+    V: np.ndarray  # (n, 3)
+    F: np.ndarray  # (f, 3)
+    loops: list  # the boundary loops, one for a disk, two for a ring
+    repairs: list  # what was done, sentences
 
 
 def clean(V: np.ndarray, F: np.ndarray) -> Clean:
@@ -34,16 +31,16 @@ def clean(V: np.ndarray, F: np.ndarray) -> Clean:
     halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
     for what no step can repair, and for all but disks and rings.
     """
-    V, T = mesh.triangles(V, F)
+    given = mesh.triangles(V, F)
     try:
-        W, G, said = _oriented(V, T)
-        loops = topology(G)
+        V, F, said = _oriented(*given)
+        loops = topology(F)
     except ValueError:
-        W, G, said = _oriented(V, T, SAME)
-        loops = topology(G)
+        V, F, said = _oriented(*given, SAME)
+        loops = topology(F)
     if len(loops) > 1:
-        W, G = _without_chords(W, G, loops)
-    return Clean(W, G, loops, said)
+        V, F = _without_chords(V, F, loops)
+    return Clean(V, F, loops, said)
 
 
 def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
@@ -54,21 +51,19 @@ def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     """
     T = triangulate(V, F)
     F = F.tolist() if isinstance(F, np.ndarray) else F
-    for tolerance in (NEAR, SAME, None) if merge else (None,):
-        try:
-            V, T, said = _oriented(V, T, tolerance)
-            break
-        except ValueError as error:
-            reason = error
-    else:
-        raise reason
-    if merge and tolerance is None:
-        said.insert(0, f"duplicate vertices were not merged: {reason}")
     first = {
         "faces with more than three corners cut into triangles": sum(len(f) > 3 for f in F),
         "faces without three different corners dropped": sum(len(set(f)) < 3 for f in F),
     }
-    return V, T, _counted(first) + said
+    said = _counted(first)
+    for tolerance in (NEAR, SAME) if merge else ():
+        try:
+            V, T, more = _oriented(V, T, tolerance)
+            return V, T, said + more
+        except ValueError as error:
+            refused = f"duplicate vertices were not merged: {error}"
+    V, T, more = _oriented(V, T)
+    return V, T, [*said, refused, *more] if merge else said + more
 
 
 def _oriented(V, T, tolerance=None):
@@ -100,7 +95,7 @@ def _counted(done):
 def merge(V: np.ndarray, F: np.ndarray, tolerance: float) -> tuple:
     """(faces F with the first of the vertices at each place only, how many others went).
 
-    tolerance: how close vertices are at one place, as a part of the bounding box of the faces.
+    tolerance: how far vertices at one place may be apart, in diagonals of the faces' box.
     """
     used, corner = np.unique(F, return_inverse=True)
     points, place = np.unique(V[used] + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
@@ -159,10 +154,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
 
 
 def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
-    """The number (3 t,) of each corner's fan: triangles around a vertex, joined by edges.
-
-    twin: the opposite half-edges, -1 where the fans end.
-    """
+    """The number (3 t,) of each corner's fan around its vertex; twin: -1 where the fans end."""
     after = np.roll(np.arange(T.size).reshape(-1, 3), -1, axis=1).ravel()
     half = np.flatnonzero(twin >= 0)
     return components(T.size, half, after[twin[half]])
@@ -173,29 +165,22 @@ def topology(T: np.ndarray) -> list:
     one, two = mesh.pairs(T).T // 3
     sizes = np.sort(np.bincount(components(len(T), one, two)))[::-1]
     if len(sizes) > 1:
-        raise ValueError(
-            f"the surface has {len(sizes)} separate pieces (of {', '.join(map(str, sizes[:4]))} "
-            f"{'... ' if len(sizes) > 4 else ''}faces): one is wanted, cover them one by one"
-        )
+        some = ", ".join(map(str, sizes[:4])) + " ..." * (len(sizes) > 4)
+        pieces = f"{len(sizes)} separate pieces (of {some} faces)"
+        raise ValueError(f"the surface has {pieces}: one is wanted, cover them one by one")
     loops = mesh.boundary_loops(T)
     euler = len(np.unique(T)) - (T.size + sum(map(len, loops))) // 2 + len(T)
     handles = (2 - len(loops) - euler) // 2
     if handles or len(loops) not in (1, 2):
-        raise ValueError(
-            f"the surface {'has' if loops else 'is closed: it has'} {len(loops)} boundary loops "
-            f"and {handles} handles: cut it into disks (1 loop, no handle) or rings (2 loops, no "
-            "handle)"
-        )
+        found = f"{'has' if loops else 'is closed: it has'} {len(loops)} boundary loops and"
+        wanted = "cut it into disks (1 loop, no handle) or rings (2 loops, no handle)"
+        raise ValueError(f"the surface {found} {handles} handles: {wanted}")
     return sorted(loops, key=len, reverse=True)
 
 
 def _without_chords(V, T, loops):
-    """The same surface, edges inside that join two vertices of one boundary loop halved.
-
-    A boundary can then become a straight line, and no triangle with it.
-    """
-    one = mesh.pairs(T)[:, 0]
-    ends = np.stack([T.ravel()[one], np.roll(T, -1, axis=1).ravel()[one]], axis=1)
+    """(V, T), inner edges between vertices of one loop halved: the loop can become straight."""
+    ends = np.stack(mesh.half_edges(T), axis=1)[mesh.pairs(T)[:, 0]]
     chords = np.concatenate([ends[np.isin(ends, loop).all(axis=1)] for loop in loops])
     for number, (a, b) in enumerate(chords, start=len(V)):
         both = (a == T).any(axis=1) & (b == T).any(axis=1)
@@ -215,10 +200,7 @@ def _place(point):
 
 
 def weld(V: np.ndarray, F: np.ndarray) -> tuple:
-    """The mesh with equal points as one vertex, in the order of their first use: (V, F).
-
-    V: (n, 3), F: integers of any shape.  Unused vertices go.
-    """
+    """(V, F), equal points as one vertex, in the order of their first use; F of any shape."""
     _, first, place = np.unique(V[F.ravel()] + 0.0, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return V[F.ravel()[first[order]]], np.argsort(order)[place.ravel()].reshape(F.shape)
@@ -227,16 +209,12 @@ def weld(V: np.ndarray, F: np.ndarray) -> tuple:
 def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
     """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
-    Quads are cut along the shorter diagonal, larger polygons ear by ear.  ValueError where no
-    ear is left: no area, or sides that cross.
+    Quads are cut along the shorter diagonal, polygons ear by ear: ValueError where none is left.
     """
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]
-    faces = [  # without corners that repeat the one before
-        [k for k, before in zip(face, [face[-1], *face[:-1]], strict=True) if k != before]
-        for face in F
-    ]
-    sizes = np.array([len(face) for face in faces])
+    faces = [[k for k, one in zip(f, [f[-1], *f[:-1]], strict=True) if k != one] for f in F]
+    sizes = np.array(list(map(len, faces)))
     parts, owner = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for size in np.unique(sizes[sizes >= 3]):
         which = np.flatnonzero(sizes == size)
@@ -251,10 +229,7 @@ def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
 
 
 def _ears(P):
-    """Triangles (k - 2, 3) of one polygon with corners P (k, 3): the shortest good cut first.
-
-    Of equally short ones the first; three corners on a line are no ear.
-    """
+    """Triangles (k - 2, 3) of a polygon P (k, 3), the shortest good cut first; no straight ears."""
     normal = np.cross(P - P[0], np.roll(P, -1, axis=0) - P[0]).sum(axis=0)
     normal /= np.linalg.norm(normal) or 1.0
     little = FLAT * np.sum(np.ptp(P, axis=0) ** 2)

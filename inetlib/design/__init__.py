@@ -59,27 +59,27 @@ def cover(
 ) -> Cover:
     """The surface V (n, 3), F triangles (f, 3) or quads (f, 4), covered by a net: a `Cover`.
 
-    theta, theta0  the angles, radians
     count, size    about how many quads, or the mean length of their edges instead
-    direction      of the u-lines, radians: in the flattened surface against its longest
-                   direction, or against the direction around the hole
+    direction      of the u-lines in the flattened surface against its longest direction, or
+                   against that around the hole; radians, as theta and theta0
     boundary       "even": sizes as equal as a conformal map allows; "plain": another map of
                    disks; over a ring the u-lines then follow both boundaries (direction=0)
-    optimise       move the vertices until the angles are exact (else: nearly)
-    tolerance      of the angles, radians; progress: show a bar
+    optimise       move the vertices until the angles are exact up to `tolerance` (else: nearly)
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
                    after every one (`solver.run.Step`); it may return False to stop
 
     The surface is a disk (one boundary loop) or a ring (two), in one piece; the net has whole
-    quads only, so that the surface shows at the boundary for less than a quad's width.  Over
-    a ring the net closes, with the nearest size and direction for which it can.  ValueError,
-    one sentence, for input that cannot be covered; safe repairs are named in the report.
-    Look at `report.converged`: a net that is off is returned, not raised.
+    quads only and leaves less than a quad's width free at the boundary.  Over a ring it closes,
+    with the nearest size and direction for which it can.  ValueError for input that cannot be
+    covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
+    off is returned, not raised.
     """
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
-    count = parallelogram.check_whole("count", count) if size is None else count
-    size = size if size is None else parallelogram.check_positive("size", size)
+    if size is None:
+        count = parallelogram.check_whole("count", count)
+    else:
+        size = parallelogram.check_positive("size", size)
     if not np.isfinite(direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
     seconds = {}

@@ -25,21 +25,15 @@ ROUND = 1e-3  # a surface without a longest direction: its moment, of its size, 
 
 
 class Flat(NamedTuple):
-    """A flattened surface, made by `flatten`; the area in the plane is that of the surface.
+    """A flattened surface, made by `flatten`; the area in the plane is that of the surface."""
 
-    z (k,) complex, F (f, 3) the triangles of the surface in the numbering of z, origin (k,)
-    the vertex of the surface each one is; period: complex, None for a disk.  flips: flipped
-    triangles; distortion (f,): longer / shorter half axis of the ellipse that a circle
-    becomes; scale (f,): length in the plane / length on the surface.
-    """
-
-    z: np.ndarray
-    F: np.ndarray
-    origin: np.ndarray
-    period: complex | None
-    flips: int
-    distortion: np.ndarray
-    scale: np.ndarray
+    z: np.ndarray  # (k,) complex
+    F: np.ndarray  # (f, 3) the triangles of the surface in the numbering of z
+    origin: np.ndarray  # (k,) the vertex of the surface that each z is
+    period: complex | None  # None for a disk
+    flips: int  # flipped triangles
+    distortion: np.ndarray  # (f,) longer / shorter half axis of the ellipse a circle becomes
+    scale: np.ndarray  # (f,) length in the plane / length on the surface
 
 
 def flatten(V: np.ndarray, F: np.ndarray, loops: list, boundary: str = "even") -> Flat:
@@ -95,7 +89,7 @@ def _disk(z, energy, loop):
 
 def _path(V, F, loops):
     """A shortest path from the second loop to the first; of equal ones that of lowest numbers."""
-    start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
+    start, end = mesh.half_edges(F)
     once = (start < end) | (mesh.opposites(F) < 0)
     length = np.linalg.norm(V[start] - V[end], axis=1)[once]
     graph = coo_array((length, (start[once], end[once])), shape=(len(V), len(V))).tocsr()
@@ -112,10 +106,10 @@ def _path(V, F, loops):
 
 def _cut(F, path):
     """(faces, origin, bank) of the triangles cut along a path: bank marks its left copies."""
-    start, twin = F.ravel(), mesh.opposites(F)
+    (start, end), twin = mesh.half_edges(F), mesh.opposites(F)
     step = np.full(F.max() + 1, -1)
     step[path[:-1]] = path[1:]
-    left = step[start] == np.roll(F, -1, axis=1).ravel()
+    left = step[start] == end
     closed = left | (left[twin] & (twin >= 0))
     corner = repair.corner_fans(F, np.where(closed, -1, twin)).astype(np.int64)
     faces, origin = corner.reshape(-1, 3), np.empty(corner.max() + 1, dtype=np.int64)
@@ -213,8 +207,7 @@ def _axis(z, F, ends):
 
 def _overlap(flat):
     """The part of the flat surface that is covered more than once."""
-    half = np.flatnonzero(mesh.opposites(flat.F) < 0)
-    edges = np.stack([flat.F.ravel()[half], np.roll(flat.F, -1, axis=1).ravel()[half]], axis=1)
+    edges = np.stack(mesh.half_edges(flat.F), axis=1)[mesh.opposites(flat.F) < 0]
     centres = flat.z[flat.F[:: 1 + len(flat.F) // SAMPLES]].mean(axis=1)
     points, places = (np.stack([z.real, z.imag], axis=1) for z in (flat.z, centres))
     return np.mean(igl.winding_number(points, edges, places) > 1.5)

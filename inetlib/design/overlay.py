@@ -57,17 +57,17 @@ def cover(
 ) -> Layer:
     """The `Layer` of about `count` quads, or of edges of mean length `size`, over a `Domain`.
 
-    direction: of the u-lines against the real axis, radians.  Over a ring both are changed as
-    little as it takes to close up around it.  ValueError if not one whole quad fits inside.
+    direction: of the u-lines against the real axis, radians.  Over a ring size and direction
+    change as little as it takes to close.  ValueError if not one whole quad fits inside.
     """
     lam, mu = parallelogram.ratios(theta, theta0)
     rho, turn = parallelogram.rho(lam, mu), np.exp(1j * direction)
     if size is None:
-        wanted, layer = f"count = {count}", _counted(domain, turn, rho, count)
+        layer = _counted(domain, turn, rho, count)
     else:
-        wanted = f"size = {size:.6g}"
         layer = _layer(domain, *_fit(domain, 2 * size / (1 + 1 / mu) * turn, rho))
     if layer is None:
+        wanted = f"count = {count}" if size is None else f"size = {size:.6g}"
         raise ValueError(f"{wanted}: not one whole quad of that size fits on the surface")
     return layer
 
@@ -97,8 +97,7 @@ def _fit(domain, u, rho):
         return complex(u), complex(u * rho), (0, 0)
     ratio = period / u
     along_v = int(ties.nearest_whole(ratio.imag / rho.imag))
-    along_u = int(ties.nearest_whole(ratio.real - along_v * rho.real))
-    along_u = along_u if along_u or along_v else 1
+    along_u = int(ties.nearest_whole(ratio.real - along_v * rho.real)) or int(not along_v)
     u = complex(period / (along_u + along_v * rho))
     return u, u * rho, (along_u, along_v)
 
@@ -116,8 +115,7 @@ def _layer(domain, u, v, winding):
     corners = np.stack([_key(domain, u, v, winding, *corner) for corner in corners], axis=1)
     Q = np.searchsorted(key, corners)
     whole = (np.append(key, np.iinfo(np.int64).min)[Q] == corners).all(axis=1)
-    centre = (i[whole] + 0.5) * u + (j[whole] + 0.5) * v
-    period = domain.flat.period or 0
+    centre, period = (i[whole] + 0.5) * u + (j[whole] + 0.5) * v, domain.flat.period or 0
     copies = [domain.lift(centre + copy)[0] for copy in {0, period, -period}]
     whole[whole] = np.any(copies, axis=0)
     if not whole.any():
@@ -157,7 +155,7 @@ def _largest_piece(Q):
         rim[inner] = False
         twice = np.bincount(Q.ravel()[rim], minlength=Q.max() + 1) > 1  # on the boundary
         pinched = kept & twice[Q].any(axis=1)
-        kept &= ~pinched
         if not pinched.any():
             break
+        kept &= ~pinched
     return Q[kept]

@@ -7,66 +7,49 @@ import igl
 import numpy as np
 
 from .. import measure, mesh, reference
+from ..reference import Reference
 from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
 
 
 class Report(NamedTuple):
-    """The numbers of a net; angles in radians, lengths in the unit of V unless it is said.
+    """The numbers of a net; angles in radians, lengths in the unit of V.
 
-    vertices, quads  how many (vertices of faces only); polygons: corners of the other faces
-    wanted           {"lam", "mu", "theta", "theta0"}: what was asked for, None where nothing was
-    lam ... theta0   `measure.Spread` over the faces; deviations are from what was asked for,
-                     or from the mean
-    flips, area_ratio, aspect, planarity    see `measure.quality`
-    edge_low, edge_mean, edge_high          lengths of the edges
-    size_ratio       longest / shortest d1: how much the similar parallelograms differ in size
-
-    None unless the net covers a surface (`design.cover`):
-    converged        all angles within the tolerance and no face flipped; `message` says it
-    distance_mean, distance_max    from the net's vertices to the surface, as fractions of the
-                     surface's bounding-box diagonal
-    back_mean, back_max            from the surface's vertices above the net to the net
-    covered          area of the net / area of the surface
-    scale_ratio      largest / smallest scale of the conformal map
-    distortion_mean, distortion_max  axes of the ellipse that a circle becomes (1 is conformal)
-    surface_flips    triangles of the surface flipped by the map
-    winding          (k, l): around a ring the net closes after k steps along u and l along v
-    repairs          what was repaired in the input, sentences
-    seconds          {stage: seconds}
+    Deviations are from what was asked for, or from the mean.  What comes from `converged` on is
+    None unless the net covers a surface (`design.cover`); its bounding box gives the diagonal.
     """
 
-    vertices: int
+    vertices: int  # those of faces only
     quads: int
-    polygons: tuple
-    wanted: dict
-    lam: measure.Spread
+    polygons: tuple  # corners of the other faces
+    wanted: dict  # {"lam", "mu", "theta", "theta0"}: what was asked for, None where nothing was
+    lam: measure.Spread  # over the faces, as the next three
     mu: measure.Spread
     theta: measure.Spread
     theta0: measure.Spread
-    flips: int
+    flips: int  # this and the next three: see `measure.quality`
     area_ratio: float
     aspect: float
     planarity: float
     edge_low: float
     edge_mean: float
     edge_high: float
-    size_ratio: float
-    converged: bool = None
-    message: str = None
-    distance_mean: float = None
+    size_ratio: float  # longest / shortest d1: how much the similar parallelograms differ in size
+    converged: bool = None  # all angles within the tolerance and no face flipped
+    message: str = None  # the same in words
+    distance_mean: float = None  # from the net's vertices to the surface, in diagonals
     distance_max: float = None
-    back_mean: float = None
+    back_mean: float = None  # from the surface's vertices above the net to the net, in diagonals
     back_max: float = None
-    covered: float = None
-    scale_ratio: float = None
-    distortion_mean: float = None
+    covered: float = None  # area of the net / area of the surface
+    scale_ratio: float = None  # largest / smallest scale of the conformal map
+    distortion_mean: float = None  # axes of the ellipse that a circle becomes (1 is conformal)
     distortion_max: float = None
-    surface_flips: int = None
-    winding: tuple = None
-    repairs: tuple = None
-    seconds: dict = None
+    surface_flips: int = None  # triangles of the surface flipped by the map
+    winding: tuple = None  # (k, l): around a ring the net closes after k steps along u, l along v
+    repairs: tuple = None  # what was repaired in the input, sentences
+    seconds: dict = None  # {stage: seconds}
 
     @property
     def max_deviation(self):
@@ -90,24 +73,18 @@ def report(
     """
     wanted = dict(zip(NAMES, (lam, mu, theta, theta0), strict=True))
     values = *measure.ratios(V, Q), *measure.angles(V, Q)
-    spreads = [measure.spread(x, wanted[name]) for name, x in zip(NAMES, values, strict=True)]
+    spreads = map(measure.spread, values, wanted.values())
     quality = measure.quality(V, Q)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
-    corners = tuple(sorted(len(polygon) for polygon in polygons))
     shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
-    sizes = (float(x) for x in (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
-    known = len(np.unique(Q)), len(Q), corners, wanted, *spreads, *shape, *sizes
-    return Report(*known)
+    sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
+    counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
+    return Report(*counts, wanted, *spreads, *shape, *sizes)
 
 
 def survey(
-    V: np.ndarray,
-    Q: np.ndarray,
-    theta: float,
-    theta0: float,
-    goal: reference.Reference,
-    flat: Flat,
+    V: np.ndarray, Q: np.ndarray, theta: float, theta0: float, goal: Reference, flat: Flat
 ) -> Report:
     """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal

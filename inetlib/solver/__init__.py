@@ -29,22 +29,18 @@ class NotConverged(RuntimeError):
 
 
 class Result(NamedTuple):
-    """The optimised net: V (n, 3), its ratios and angles (radians), and how it was found.
+    """The optimised net, and how it was found."""
 
-    history: list of `run.Step`, the first is the start; seconds: {stage: seconds}; sizes:
-    (#var, #cons) of the formulation; message: why it converged or did not.
-    """
-
-    V: np.ndarray
+    V: np.ndarray  # (n, 3)
     lam: float
     mu: float
-    theta: float
+    theta: float  # radians
     theta0: float
-    history: list
+    history: list  # of `run.Step`, the first is the start
     converged: bool
-    message: str
-    seconds: dict
-    sizes: tuple
+    message: str  # why it converged or did not
+    seconds: dict  # {stage: seconds}
+    sizes: tuple  # (#var, #cons) of the formulation
 
 
 def optimize(
@@ -116,16 +112,16 @@ def optimize(
         limit = check_whole("iterations", iterations, 0)
     shape_steps = check_whole("shape_steps", shape_steps, 0)
     weights = weights or (Weights() if ours else PAPER)
-    surface, still = (reference, on_surface), (fixed, mobility, polygons)
-    given = prepare(V, Q, wanted, weights, *surface, *still, residual == "quadratic")
+    still, quadratic = (fixed, mobility, polygons), residual == "quadratic"
+    given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
-            options = run.Options(via, stride * factor, shape_steps, limit)
+            goals = run.way(given, via, stride * factor)
             if ours:
-                run.ratio(log, options)
+                run.ratio(log, goals, shape_steps, limit)
             else:
-                guided.run(log, options, spsolve if formulation == "paper" else None)
+                guided.run(log, goals, limit, spsolve if formulation == "paper" else None)
             if log.done or len(log.history) > limit:
                 break
     result = _result(log, ours)
@@ -140,25 +136,21 @@ def _check_choice(name, value, allowed):
 
 
 def _result(log, ours):
-    given = log.given
+    """The `Result` of the best net."""
+    given, count = log.given, len(log.history) - 1
     (flips, deviation), V, s = log.best
     good = bool(deviation <= log.tolerance and flips == 0)
-    lam, mu = (float(x) for x in np.exp(logs(given.goal, s)[0]))
-    found = (float(x) for x in angles(given.goal, s))
-    message = _message(good, log.stopped, flips, deviation, len(log.history) - 1)
-    sizes = V.size + len(s), 2 * len(given.Q)
-    if not ours:
-        sizes = guided.size(given.Q, len(V), given.goal)
-    return Result(V, lam, mu, *found, log.history, good, message, given.seconds, sizes)
-
-
-def _message(good, stopped, flips, deviation, count):
     if good:
         words = f"converged in {count} steps"
-    elif stopped:
+    elif log.stopped:
         words = f"stopped by the caller after {count} steps"
     elif flips:
         words = f"not converged in {count} steps, every net on the way had flipped faces"
     else:
         words = f"not converged in {count} steps, this is the best net without flipped faces"
-    return f"{words}: at most {np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    shape = map(float, (*np.exp(logs(given.goal, s)[0]), *angles(given.goal, s)))
+    sizes = V.size + len(s), 2 * len(given.Q)
+    if not ours:
+        sizes = guided.size(given.Q, len(V), given.goal)
+    message = f"{words}: at most {np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    return Result(V, *shape, log.history, good, message, given.seconds, sizes)

@@ -1,9 +1,7 @@
 """How many numbers of an isogonal net may still be chosen: the rank of its equations.
 
 Two equations a face, three coordinates a vertex: 3 V - 2 F degrees of freedom wherever the
-equations are independent at first order.
-
-Paper: B8.
+equations are independent at first order.  Paper: B8.
 """
 
 from collections.abc import Sequence
@@ -19,16 +17,13 @@ LARGEST = 1200  # faces, of a dense singular value decomposition
 
 
 class Freedom(NamedTuple):
-    """unknowns: free coordinates; equations: 2 a face; rank: how many are independent;
-    free: unknowns - rank, the dimension of the linearised nets; gap: smallest counted
-    singular value over the largest.
-    """
+    """The size of the linearised equations, and how many of them are independent."""
 
-    unknowns: int
-    equations: int
-    rank: int
-    free: int
-    gap: float
+    unknowns: int  # coordinates of vertices that do not stay
+    equations: int  # two a face
+    rank: int  # how many are independent
+    free: int  # unknowns - rank, the dimension of the linearised nets
+    gap: float  # smallest singular value that counts / the largest
 
 
 def jacobian(V: np.ndarray, Q: np.ndarray) -> csr_array:
@@ -52,10 +47,9 @@ def count(
     """
     if len(Q) > LARGEST:
         raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")
-    J = jacobian(V, Q).toarray()
-    stay = np.zeros(len(V), dtype=bool)
-    stay[np.asarray(fixed, dtype=bool if np.asarray(fixed).dtype == bool else int)] = True
-    J = J[:, ~np.repeat(stay, 3)]
+    free = np.ones(len(V), dtype=bool)
+    free[list(fixed)] = False
+    J = jacobian(V, Q).toarray()[:, np.repeat(free, 3)]
     values = np.linalg.svd(J, compute_uv=False)
     rank = int(np.sum(values > tolerance * values[0]))
     gap = float(values[rank - 1] / values[0])

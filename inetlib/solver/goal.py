@@ -11,20 +11,19 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .. import parallelogram
+from ..parallelogram import check_angle, check_positive
 
+ANGLES = "theta", "theta0"
 INSIDE = 0.99  # of the range of Eq. (4), for a start
 ALIKE = 1e-9  # radians: two given angles as close as this are meant to be the same
 
 
 class Goal(NamedTuple):
-    """kind: "angles", "theta", "theta0", "lam", "mu", "equal" or "free"; values: see `aim`.
+    """What is wanted, made by `aim`."""
 
-    equal: theta = theta0 is wanted in the end; the paper has fewer equations for that.
-    """
-
-    kind: str
-    values: tuple
-    equal: bool = False
+    kind: str  # "angles", "theta", "theta0", "lam", "mu", "equal" or "free"
+    values: tuple  # (theta, theta0), the one given angle, or the logarithm of the one given ratio
+    equal: bool = False  # theta = theta0 in the end; the paper has fewer equations for that
 
 
 def aim(
@@ -36,10 +35,8 @@ def aim(
 ) -> Goal:
     """The `Goal` of the given numbers: angles in radians, ratios positive; None leaves free.
 
-    equal: theta = theta0 wanted (lam = mu), whatever its value.  `values` holds (theta,
-    theta0) of "angles", else the one given angle or the logarithm of the one given ratio.
-    ValueError for numbers out of range, for more than two, and for pairs that fit no
-    parallelogram or two of them.
+    equal: theta = theta0 wanted (lam = mu), whatever its value.  ValueError for numbers out of
+    range, for more than two, and for pairs that fit no parallelogram or two of them.
 
     >>> aim(lam=1, mu=1).equal, aim(theta=1.2).kind, aim(1.2, 1.3).values
     (True, 'theta', (1.2, 1.3))
@@ -49,8 +46,7 @@ def aim(
     known = {}
     for name, x in {"theta": theta, "theta0": theta0, "lam": lam, "mu": mu}.items():
         if x is not None:
-            angle = name.startswith("theta")
-            check = parallelogram.check_angle if angle else parallelogram.check_positive
+            check = check_angle if name in ANGLES else check_positive
             known[name] = float(check(name, x))
     if equal:
         return _equal(known)
@@ -60,7 +56,7 @@ def aim(
         return Goal("free", ())
     if len(known) == 1:
         ((kind, x),) = known.items()
-        return Goal(kind, (x if kind.startswith("theta") else float(np.log(x)),))
+        return Goal(kind, (x if kind in ANGLES else float(np.log(x)),))
     one, two = _both(known)
     if abs(one - two) <= ALIKE:  # one angle, twice: lam and mu from it may differ in a bit
         return _equal({"theta": one})
@@ -69,10 +65,7 @@ def aim(
 
 def _equal(known):
     """The goal theta = theta0, whatever it is or as given."""
-    angles = [
-        x if name.startswith("theta") else float(parallelogram.angles(x, x)[0])
-        for name, x in known.items()
-    ]
+    angles = [x if k in ANGLES else float(parallelogram.angles(x, x)[0]) for k, x in known.items()]
     if np.ptp(angles or [0.0]) > ALIKE:
         raise ValueError("with equal=True one angle or one ratio is wanted, and no other value")
     return Goal("angles", (angles[0], angles[0]), True) if angles else Goal("equal", (), True)
@@ -80,14 +73,13 @@ def _equal(known):
 
 def _both(known):
     """(theta, theta0) from any two of the four numbers."""
-    names = set(known)
-    if names == {"theta", "theta0"}:
+    one, other = sorted(known)
+    if (one, other) == ANGLES:
         return known["theta"], known["theta0"]
-    if names in ({"lam", "theta0"}, {"mu", "theta"}):
-        one, other = sorted(names)
+    if (one, other) in (("lam", "theta0"), ("mu", "theta")):
         rest = "mu or theta" if one == "lam" else "lam or theta0"
         raise ValueError(f"{one} and {other} fit two nets, or none: give {rest} instead of one")
-    if names == {"lam", "mu"}:
+    if (one, other) == ("lam", "mu"):
         found = parallelogram.angles(known["lam"], known["mu"])
     else:
         kind, ratio = ("theta", "lam") if "theta" in known else ("theta0", "mu")
@@ -146,8 +138,8 @@ def _possible(goal, log_lam, log_mu):
         return log_lam, log_mu
     if goal.kind in ("lam", "mu"):
         bound = np.arcsinh(INSIDE / abs(np.sinh(goal.values[0])))
-        one, other = np.sign(log_lam) * bound, np.sign(log_mu) * bound
-        return (log_lam, other) if goal.kind == "lam" else (one, log_mu)
+        one, two = np.sign(log_lam) * bound, np.sign(log_mu) * bound
+        return (log_lam, two) if goal.kind == "lam" else (one, log_mu)
     shrink = brentq(lambda k: abs(np.sinh(k * log_lam) * np.sinh(k * log_mu)) - INSIDE, 0, 1)
     return shrink * log_lam, shrink * log_mu
 

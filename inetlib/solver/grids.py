@@ -15,6 +15,7 @@ from .run import judge, timed
 TOLERANCE = np.radians(1e-6)
 SPARE = 100  # the finest level aims at the tolerance divided by this
 FINEST = 8  # steps at most on the finest level
+WORDS = "{} x {} quads in {} steps"
 BETWEEN = 2, 1e-6, 0.01  # on the others: steps at most, deviation aimed at and good enough
 
 
@@ -38,8 +39,8 @@ def optimize(
     Vertices of the result are numbered as in `mesh.grid_quads(m, n)`.  The coarse grid is
     solved by `solver.optimize`, then the number of quads is doubled both ways again and
     again; details of X smaller than coarse quads are lost.  Where that fails it is tried
-    once more from a finer coarse grid.  `history` has the steps of all levels in turn, and
-    `message` says how many of them belong to which level.
+    once more from a finer coarse grid.  `message` says how many steps of the `history` belong
+    to which level.
     """
     wanted = aim(theta, theta0, lam, mu)
     if wanted.kind != "angles":
@@ -47,7 +48,7 @@ def optimize(
     if not tolerance > 0:
         raise ValueError(f"tolerance = {tolerance}: positive radians are wanted")
     X = _checked(X)
-    m, n = X.shape[0] - 1, X.shape[1] - 1
+    m, n = (k - 1 for k in X.shape[:2])
     plans = [levels(m, n, size) for size in (coarse, 2 * coarse)]
     best, seconds = None, {}
     with tqdm(disable=not progress, unit=" steps", desc="coarse grid") as bar:
@@ -58,20 +59,16 @@ def optimize(
                 break
     V, (flips, deviation), history, words = best
     good = bool(flips == 0 and deviation <= tolerance)
-    message = f"{'' if good else 'not '}converged: {words}; at most " + (
-        f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
-    )
-    ratios = (float(x) for x in np.exp(logs(wanted, [])[0]))
-    told = history, good, message, seconds, (V.size, 2 * m * n)
-    return Result._make([V, *ratios, *wanted.values, *told])
+    message = f"{'' if good else 'not '}converged: {words}; at most "
+    message += f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    shape = (*map(float, np.exp(logs(wanted, [])[0])), *wanted.values)
+    return Result._make([V, *shape, history, good, message, seconds, (V.size, 2 * m * n)])
 
 
 def _checked(X):
     X = np.asarray(X)
     if X.ndim != 3 or X.shape[2] != 3 or min(X.shape) < 3:
-        raise ValueError(
-            f"X has the shape {X.shape}: a grid (m+1, n+1, 3) with m, n at least 2 is wanted"
-        )
+        raise ValueError(f"X has the shape {X.shape}: (m+1, n+1, 3), m and n at least 2, is wanted")
     V, Q = mesh.check_arrays(X.reshape(-1, 3), mesh.grid_quads(X.shape[0] - 1, X.shape[1] - 1))
     measure.flipped(V, Q, np.full((len(Q), 1), -1))  # refuses collapsed faces
     return V.reshape(X.shape)
@@ -95,7 +92,7 @@ def _attempt(X, goal, sizes, tolerance, seconds, bar):
         V = _vertices(refine(P, *sizes[0]))
         net = solve(V, mesh.grid_quads(*sizes[0]), *goal.values)
     history, good = list(net.history), net.converged
-    words = [_words(sizes[0], len(history) - 1)]
+    words = [WORDS.format(*sizes[0], len(history) - 1)]
     P = net.V.T.reshape(3, *(k + 1 for k in sizes[0]))
     if not good:
         words.append(f"the coarse grid failed ({net.message})")
@@ -105,21 +102,15 @@ def _attempt(X, goal, sizes, tolerance, seconds, bar):
         effort = (FINEST, tolerance / SPARE, tolerance) if size == sizes[-1] else BETWEEN
         P, found, good = _level(P, goal, *effort, seconds, bar)
         history += found
-        words.append(_words(size, len(found)))
+        words.append(WORDS.format(*size, len(found)))
         if not good:
             words.append("where the refinement went astray")
             break
     nets = [refine(net, *sizes[-1]) for net in ([P] if good else [P, np.moveaxis(X, 2, 0)])]
-    found = []
     measured = _judge(sizes[-1], goal, {})
-    for P in nets:
-        if (step := measured(P)) is not None:
-            found.append((_vertices(P).copy(), (step.flips, step.deviation)))
+    steps = ((P, step) for P in nets if (step := measured(P)))
+    found = [(_vertices(P).copy(), (step.flips, step.deviation)) for P, step in steps]
     return *min(found, key=lambda one: one[1]), history, ", ".join(words)
-
-
-def _words(size, count):
-    return f"{size[0]} x {size[1]} quads in {count} steps"
 
 
 def _level(P, goal, most, exact, enough, seconds, bar):
@@ -137,10 +128,10 @@ def _level(P, goal, most, exact, enough, seconds, bar):
             break
         P, step = P - d, after
         history.append(step)
-        off = f"{np.degrees(step.deviation):.2g} degrees off"
-        bar.set_description(f"{size[0]} x {size[1]} quads, {off}")
+        off = np.degrees(step.deviation)
+        bar.set_description(f"{size[0]} x {size[1]} quads, {off:.2g} degrees off")
         bar.update()
-    return P, history, step is not None and not step.flips and step.deviation <= enough
+    return P, history, step and not step.flips and step.deviation <= enough
 
 
 def _judge(size, goal, seconds):

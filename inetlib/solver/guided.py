@@ -18,30 +18,30 @@ from ..parallelogram import ratios
 from . import residuals, sparse
 from .goal import Goal, freedom
 from .problem import shape
-from .run import Log, Options, timed, way
+from .run import Log, timed
 
 EPSILON = 0.001  # of the regularisation
 STEPS = 17  # as many as the paper makes, the last two without shape energies
 
 
 class Layout(NamedTuple):
-    """Where the unknowns stand: corners (f, 12), names of the others (f,) or one number."""
+    """Where the unknowns stand."""
 
     theta_mode: bool
-    corners: np.ndarray
-    at: dict
-    columns: int
+    corners: np.ndarray  # (f, 12)
+    at: dict  # the other variables by name, each (f,)
+    columns: int  # how many
 
 
 def layout(Q: np.ndarray, count: int, theta_mode: bool) -> Layout:
     """The `Layout` of a mesh of `count` vertices.  Paper: Eq. (17), Eq. (18), Eq. (21), Table 1."""
-    F, start = len(Q), 3 * count
     names = ["La", "Lb"] if theta_mode else ["La", "Lb", "Lp", "Lq", "c1", "c2"]
-    at = {name: np.arange(start + k * F, start + (k + 1) * F) for k, name in enumerate(names)}
-    start += len(names) * F
     common = ["c1"] if theta_mode else ["lam", "mu"]
-    at |= {name: np.full(F, start + k) for k, name in enumerate(common)}
-    return Layout(theta_mode, sparse.coordinates(Q), at, start + len(common))
+    here = 3 * count + np.arange(len(names) * len(Q)).reshape(len(names), len(Q))
+    end = 3 * count + here.size
+    at = dict(zip(names, here, strict=True))
+    at |= {name: np.full(len(Q), end + k) for k, name in enumerate(common)}
+    return Layout(theta_mode, sparse.coordinates(Q), at, end + len(common))
 
 
 def start(lay: Layout, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
@@ -52,13 +52,12 @@ def start(lay: Layout, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
     d1, d2 = P[:, 2] - P[:, 0], P[:, 3] - P[:, 1]
     La, Lb, Lp, Lq = (np.einsum("ij,ij->i", d, d) for d in (d1, d2, d1 + d2, d2 - d1))
     lam, mu = np.sqrt(Lb / La), np.sqrt(Lp / Lq)
+    values = {"La": La, "Lb": Lb, "Lp": Lp, "Lq": Lq, "c1": lam**2, "c2": mu**2}
+    values |= {"lam": lam.mean(), "mu": mu.mean()}
     if lay.theta_mode:
-        values = {"La": La, "Lb": Lb, "c1": np.mean(lam**2)}
-    else:
-        values = {"La": La, "Lb": Lb, "Lp": Lp, "Lq": Lq, "c1": lam**2, "c2": mu**2}
-        values |= {"lam": lam.mean(), "mu": mu.mean()}
-    for name, value in values.items():
-        x[lay.at[name]] = value
+        values["c1"] = np.mean(lam**2)
+    for name, columns in lay.at.items():
+        x[columns] = values[name]
     return x
 
 
@@ -96,10 +95,10 @@ def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple
     ]
     if goal.kind in ("lam", "mu"):
         return [*found, (residuals.given, index(goal.kind)[:1], (np.exp(goal.values[0]),))]
-    columns = {"theta": ("lam", "c1", "c2"), "theta0": ("mu", "c2", "c1")}
-    names = tuple(columns) if goal.kind == "angles" else (goal.kind,)
+    known = {"theta": index("lam", "c1", "c2"), "theta0": index("mu", "c2", "c1")}
+    names = tuple(known) if goal.kind == "angles" else (goal.kind,)
     pairs = zip(names, goal.values, strict=False)
-    return found + [(residuals.given_angle, index(*columns[k]), (x,)) for k, x in pairs]
+    return found + [(residuals.given_angle, known[name], (angle,)) for name, angle in pairs]
 
 
 def size(Q: np.ndarray, count: int, goal: Goal) -> tuple[int, int]:
@@ -118,8 +117,8 @@ def hard(lay: Layout, goal: Goal, x: np.ndarray) -> tuple[np.ndarray, csr_array]
     return np.concatenate(found), vstack(blocks, format="csr")
 
 
-def run(log: Log, options: Options, solve: Callable | None = None) -> None:
-    """Guided projection: a fixed number of steps, the last two without shape energies.
+def run(log: Log, goals: list[Goal], limit: int, solve: Callable | None = None) -> None:
+    """Guided projection: `limit` steps, the last two without shape energies, to `run.way` goals.
 
     x holds lengths in units of the diagonal of the bounding box, as the paper scales its
     meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
@@ -127,10 +126,9 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
     """
     given, V, lay = log.given, log.given.V, None
     solve = solve or (lambda A, b: sparse.factor(A)(b))
-    goals = way(given, options.via, options.stride)
     diagonal = np.linalg.norm(np.ptp(V, axis=0))
-    last = options.limit - 2
-    for k in range(options.limit):
+    last = limit - 2
+    for k in range(limit):
         goal = goals[k] if k < min(len(goals), last) else given.goal
         if lay is None or goal.equal != lay.theta_mode:
             lay = layout(given.Q, len(V), goal.equal)
@@ -151,13 +149,10 @@ def run(log: Log, options: Options, solve: Callable | None = None) -> None:
 
 
 def _system(given, lay, goal, x, diagonal):
-    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility.
-
-    diagonal: the unit of the lengths in x, None without the energies of Sec. 6.3.
-    """
+    """(R A R, g, R) of the step d with (H^T H + K^T K + eps^2) d = -g, R as free as mobility."""
     residual, H = hard(lay, goal, x)
     A, g, count = H.T @ H, H.T @ residual, given.V.size
-    if diagonal:
+    if diagonal:  # the unit of the lengths in x; None without the energies of Sec. 6.3
         K, k = shape(given, diagonal * x[:count].reshape(-1, 3))
         K = (K + diags_array(np.repeat(given.weights.closeness, 3))).tocoo()
         A = A + coo_array((K.data, K.coords), shape=A.shape)

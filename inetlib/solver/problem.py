@@ -17,43 +17,38 @@ FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
 class Weights(NamedTuple):
     """Weights of the shape energies, numbers >= 0 or arrays (n,), one number a vertex.
 
-    fairness (omega_2), closeness (omega_3), approximation (omega_4), boundary (omega_5).
     The formulation "ratio" compares them with logarithms of ratios, lengths in mean edges;
     "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`.
     """
 
-    fairness: float | np.ndarray = 0.02
-    closeness: float | np.ndarray = 0.001
-    approximation: float | np.ndarray = 0.1
-    boundary: float | np.ndarray = 0.0003
+    fairness: float | np.ndarray = 0.02  # omega_2
+    closeness: float | np.ndarray = 0.001  # omega_3
+    approximation: float | np.ndarray = 0.1  # omega_4
+    boundary: float | np.ndarray = 0.0003  # omega_5
 
 
 PAPER = Weights(fairness=0.005, closeness=0.01, approximation=0.01, boundary=0.01)
 
 
 class Problem(NamedTuple):
-    """A checked problem: the arguments of `prepare`, weights and mobility as arrays (n,).
-
-    boundary: vertices on it; fair: the matrix of fairness; neighbours: of the faces; edge:
-    the mean length of an edge; the factors solve the linear systems of the kinds of steps;
-    seconds: {stage: seconds} spent so far.
-    """
+    """A checked problem: the arguments of `prepare`, and what they lead to."""
 
     V: np.ndarray
     Q: np.ndarray
     goal: Goal
-    weights: Weights
+    weights: Weights  # arrays (n,)
     reference: Reference | None
     on_surface: bool
-    mobility: np.ndarray
-    boundary: np.ndarray
-    fair: csr_array
-    neighbours: np.ndarray
-    edge: float
-    shape_factor: sparse.Factor
+    mobility: np.ndarray  # (n,)
+    boundary: np.ndarray  # the vertices on it
+    fair: csr_array  # the matrix of fairness
+    neighbours: np.ndarray  # of the faces
+    edge: float  # mean length
+    rounding: float  # the angle by which rounding of V may turn the shortest edge
+    shape_factor: sparse.Factor  # of the linear systems, one for each kind of step
     angle_factor: sparse.Factor
     quadratic: bool
-    seconds: dict
+    seconds: dict  # {stage: seconds} spent so far
 
 
 def prepare(
@@ -68,26 +63,35 @@ def prepare(
     polygons: Sequence = (),
     quadratic: bool = False,
 ) -> Problem:
-    """The `Problem` of a labelled mesh, or a ValueError that says what is wrong with the input.
+    """The `Problem` of a labelled mesh V (n, 3), Q (f, 4), or a ValueError that says what is wrong.
 
-    V (n, 3), Q (f, 4); reference: see `reference`; on_surface: keep the vertices on it;
-    fixed: vertex numbers, a boolean mask or "boundary"; mobility (n,), how easily each vertex
-    moves, 0 not at all; polygons: faces that are no quads and bound no boundary of the net;
-    quadratic: the kind of residual, see `run.equations`.
+    on_surface: keep the vertices on the reference; fixed: vertex numbers, a mask or "boundary";
+    mobility (n,), how easily each vertex moves, 0 not at all; polygons: faces that are no quads
+    and bound no boundary of the net; quadratic: the kind of residual, see `run.equations`.
     """
-    V, Q = _checked_mesh(V, Q)
+    if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
+        face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
+        words = f"face {face} has {np.size(Q[face])} corners: give the quads as Q"
+        raise ValueError(f"{words} and the other faces as polygons=[...]")
+    V, Q = mesh.check(V, Q)
+    mesh.require_labels(Q)
+    measure.quality(V, Q)  # refuses collapsed faces
     weights = _checked_weights(weights or Weights(), len(V))
     boundary = _boundary(Q, polygons)
     mobility = _mobility(mobility, fixed, boundary, len(V))
-    if reference is not None:
-        _check_distance(V, reference)
-    elif on_surface:
+    if on_surface and reference is None:
         raise ValueError("on_surface=True needs a reference surface")
-    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
-    edge = float(np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).mean())
+    if reference is not None:
+        apart = np.linalg.norm(V - reference.closest(V)[0], axis=1).mean() / reference.diagonal
+        if not apart < FAR:
+            far = f"{apart:.3g} of its diagonal on average, at most {FAR} is wanted"
+            raise ValueError(f"the reference is far away, {far}: move or scale one of the two")
+    edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
+    lengths = float(edges.mean()), 8 * np.spacing(np.abs(V).max()) / edges.min()
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
+    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
-    return Problem(V, Q, *kept, mesh.face_neighbours(Q), edge, *factors, quadratic, {})
+    return Problem(V, Q, *kept, mesh.face_neighbours(Q), *lengths, *factors, quadratic, {})
 
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
@@ -112,28 +116,13 @@ def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     return A, g
 
 
-def _checked_mesh(V, Q):
-    if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
-        face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
-        raise ValueError(
-            f"face {face} has {np.size(Q[face])} corners: give the quads as Q "
-            "and the other faces as polygons=[...]"
-        )
-    V, Q = mesh.check(V, Q)
-    mesh.require_labels(Q)
-    measure.quality(V, Q)  # refuses collapsed faces
-    return V, Q
-
-
 def _checked_weights(weights, count):
     found = {}
     for name, value in weights._asdict().items():
         value = np.asarray(value, dtype=float)
         if value.ndim and value.shape != (count,):
-            raise ValueError(
-                f"weights.{name} has the shape {value.shape}: one number, or one for each of "
-                f"the {count} vertices, is wanted"
-            )
+            words = f"weights.{name} has the shape {value.shape}: one number, or one for each of"
+            raise ValueError(f"{words} the {count} vertices, is wanted")
         if not (np.isfinite(value).all() and (value >= 0).all()):
             raise ValueError(f"weights.{name} = {value.min():.6g}: weights are finite and >= 0")
         found[name] = np.broadcast_to(value, (count,))
@@ -145,15 +134,12 @@ def _mobility(mobility, fixed, boundary, count):
     mobility = np.ones(count) if mobility is None else np.array(mobility, dtype=float)
     if mobility.shape != (count,) or not np.isfinite(mobility).all() or (mobility < 0).any():
         raise ValueError(f"mobility: {count} finite numbers >= 0 are wanted, one for each vertex")
-    if isinstance(fixed, str):
-        if fixed != "boundary":
-            raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
-        fixed = boundary
-    fixed = np.asarray([] if fixed is None else fixed)
-    if fixed.dtype == bool:
-        if fixed.shape != (count,):
-            raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
-    elif fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
+    if isinstance(fixed, str) and fixed != "boundary":
+        raise ValueError(f'fixed = "{fixed}": vertex numbers, a mask or "boundary" is wanted')
+    fixed = np.asarray(boundary if isinstance(fixed, str) else [] if fixed is None else fixed)
+    if fixed.dtype == bool and fixed.shape != (count,):
+        raise ValueError(f"fixed is a mask of shape {fixed.shape}: {count} entries are wanted")
+    if fixed.dtype != bool and fixed.size and not (fixed.min() >= 0 and fixed.max() < count):
         raise ValueError(f"fixed names a vertex that is not there: 0 to {count - 1} are wanted")
     if fixed.size:
         mobility[fixed] = 0
@@ -168,21 +154,9 @@ def _boundary(Q, polygons):
     for polygon in polygons:
         rim = frozenset(np.asarray(polygon).ravel().tolist())
         if loops.pop(rim, None) is None:
-            raise ValueError(
-                f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must "
-                "be all the vertices of one boundary loop"
-            )
+            words = f"polygon {sorted(rim)[:8]} is not a hole of the quad mesh: its corners must"
+            raise ValueError(f"{words} be all the vertices of one boundary loop")
     return np.concatenate([np.zeros(0, dtype=np.int64), *loops.values()])
-
-
-def _check_distance(V, reference):
-    feet, _ = reference.closest(V)
-    apart = np.linalg.norm(V - feet, axis=1).mean() / reference.diagonal
-    if not apart < FAR:
-        raise ValueError(
-            f"the reference surface is far away: {apart:.3g} of its bounding-box diagonal on "
-            f"average, at most {FAR} is wanted; bring both into one coordinate system"
-        )
 
 
 def _fairness(triples, weights, count):

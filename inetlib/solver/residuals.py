@@ -17,7 +17,7 @@ SIGNS = np.array([[-1, 0, 1, 0], [0, -1, 0, 1], [-1, -1, 1, 1], [1, -1, -1, 1]],
 
 
 def _vectors(x, rows):
-    """The chosen vectors of `SIGNS`, a list of (f, 3) arrays."""
+    """The chosen vectors of `SIGNS`, (v, f, 3)."""
     return np.einsum("vc,fcx->vfx", SIGNS[rows], x[:, :12].reshape(-1, 4, 3))
 
 
@@ -67,14 +67,12 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None
     vectors[2:] /= 2
     if sizes is None:
         lengths = np.linalg.norm(vectors, axis=2)
-        sizes = np.stack([lengths[0] * lengths[1], lengths[2] * lengths[3]], axis=1)
+        sizes = (lengths[::2] * lengths[1::2]).T
     scale = 2 * np.array([lam, mu]) * sizes
-    residual = np.stack(
-        [_dot(d2, d2) - lam**2 * _dot(d1, d1), _dot(p, p) - mu**2 * _dot(q, q)], axis=1
-    )
+    residual = _dot(d2, d2) - lam**2 * _dot(d1, d1), _dot(p, p) - mu**2 * _dot(q, q)
     one = _by_corners(np.stack([-2 * lam**2 * d1, 2 * d2]), [0, 1])
     two = _by_corners(np.stack([p, -(mu**2) * q]), [2, 3])
-    return residual / scale, np.stack([one, two], axis=1) / scale[..., None]
+    return np.stack(residual, axis=1) / scale, np.stack([one, two], axis=1) / scale[..., None]
 
 
 def squared_diagonals(x: np.ndarray) -> Local:
@@ -112,10 +110,7 @@ def square_root(x: np.ndarray) -> Local:
 
 
 def given(x: np.ndarray, value: float) -> Local:
-    """x - value for single variables, x: (f, 1): a ratio with a wanted value.
-
-    Paper: Eq. (19), Eq. (22).
-    """
+    """x - value; x: (f, 1), a ratio with a wanted value.  Paper: Eq. (19), Eq. (22)."""
     return x - value, np.ones((len(x), 1, 1))
 
 
@@ -124,18 +119,14 @@ def given_angle(x: np.ndarray, angle: float) -> Local:
 
     The same function of (mu, c2, c1) and theta0.  Paper: Eq. (20).
     """
-    ratio, c1, c2 = x.T
-    k = 2 * np.cos(angle)
+    (ratio, c1, c2), k = x.T, 2 * np.cos(angle)
     residual = (1 + c1) * (c2 - 1) - k * ratio * (1 + c2)
     columns = [-k * (1 + c2), c2 - 1, 1 + c1 - k * ratio]
     return residual[:, None], np.stack(columns, axis=1)[:, None]
 
 
 def theta_quad(x: np.ndarray) -> Local:
-    """d2^2 - d1^2 - 2 d1 . d2, zero where theta = theta0; x: corners (f, 12).
-
-    Paper: Eq. (13), Eq. (21).
-    """
+    """d2^2 - d1^2 - 2 d1 . d2 (theta = theta0); x: corners (f, 12).  Paper: Eq. (13), Eq. (21)."""
     d1, d2 = _vectors(x, [0, 1])
     residual = _dot(d2, d2) - _dot(d1, d1) - 2 * _dot(d1, d2)
     gradient = _by_corners(np.stack([-2 * (d1 + d2), 2 * (d2 - d1)]), [0, 1])

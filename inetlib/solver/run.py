@@ -15,6 +15,8 @@ from . import residuals, sparse
 from .goal import Goal, aim, angles, freedom, logs, towards
 from .problem import Problem, shape
 
+Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
+
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
 STARTS = {
     "medials": {"theta0": np.pi / 2},
@@ -27,32 +29,20 @@ PARTS = 1, 1 / 2, 1 / 4, 1 / 8, 1 / 16  # of a step, when free ratios leave thei
 WORSE = 3  # angle steps in a row without progress end a run
 
 
-class Options(NamedTuple):
-    """How to go, see `solver.optimize`; limit: the most steps."""
-
-    via: str
-    stride: float
-    shape_steps: int
-    limit: float
-
-
 class Step(NamedTuple):
-    """One iteration: `kind` is "shape", "angle" or "guided"; angles in radians.
+    """One iteration and the net after it."""
 
-    residual: sum of the squared residuals of the formulation's equations after the step;
-    theta_max ... theta0_mean: deviation of the angles from those of the final goal;
-    size: the longest way of a vertex; flips: flipped faces; goal: that of this step.
-    """
+    """One iteration and the net after it."""
 
-    kind: str
-    goal: Goal
-    residual: float
-    theta_max: float
+    kind: str  # "start", "shape", "angle" or "guided"
+    goal: Goal  # of this step
+    residual: float  # sum of the squared residuals of the formulation's equations
+    theta_max: float  # deviations of the angles from those of the final goal, radians
     theta_mean: float
     theta0_max: float
     theta0_mean: float
-    size: float
-    flips: int
+    size: float  # the longest way of a vertex
+    flips: int  # flipped faces
 
     @property
     def deviation(self) -> float:
@@ -104,25 +94,22 @@ def equations(
     wanted, slopes = logs(goal, s)
     x = V[problem.Q].reshape(-1, 12)
     if problem.quadratic:
-        lam, mu = np.exp(wanted)
-        found, jacobian = residuals.scaled_ratios(x, lam, mu)
+        found, jacobian = residuals.scaled_ratios(x, *np.exp(wanted))
     else:
         found, jacobian = residuals.log_ratios(x)
-        found = found - wanted
+        found -= wanted
     J = sparse.rows(jacobian, sparse.coordinates(problem.Q), V.size)
     return found.ravel(), J, np.tile(slopes, (len(x), 1))
 
 
-def shape_step(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def shape_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s) of one Gauss-Newton step on all energies.
 
     All lengths are measured in mean edges, so the step does not depend on the scale.
     """
     with timed(problem.seconds, "assemble"):
-        residual, J, slopes = equations(problem, V, goal, s)
-        f, G = residual * problem.edge, slopes * problem.edge
+        f, J, G = equations(problem, V, goal, s)
+        f, G = f * problem.edge, G * problem.edge
         root = np.repeat(np.sqrt(problem.mobility), 3)
         J = sparse.scaled(J, problem.edge * root)
         A, g = shape(problem, V)
@@ -142,28 +129,25 @@ def shape_step(
     return d.reshape(-1, 3), ds
 
 
-def angle_step(
-    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s): the smallest change to the linearised angles.
 
     Smallest in the sum of |d|^2 / mobility over the vertices.  On a surface (`on_surface`)
     the vertices go to their closest points and move along the tangent planes there.
     """
     with timed(problem.seconds, "assemble"):
-        residual, J, slopes = equations(problem, V, goal, s)
+        f, J, G = equations(problem, V, goal, s)
         free, root, lift = _metric(problem, V)
-        f = residual + J @ lift
+        right = np.column_stack([f + J @ lift, G])
         J = free(J)
         S = J @ J.T
         diagonal = S.diagonal()
         S.setdiag(diagonal + REGULAR * diagonal.mean())
-        right = np.column_stack([f, slopes])
     with timed(problem.seconds, "factor"):
         solve = problem.angle_factor(S)
     with timed(problem.seconds, "solve"):
         y = solve(right)
-        ds = _freedom(slopes.T @ y[:, 1:], slopes.T @ y[:, 0])
+        ds = _freedom(G.T @ y[:, 1:], G.T @ y[:, 0])
         d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
     return d.reshape(-1, 3), ds
 
@@ -176,18 +160,14 @@ def _freedom(A, b):
 
 
 def _metric(problem, V):
-    """(free, root, lift): J -> J R, the matrix R, and the way onto the surface.
-
-    R R^T tells how freely the coordinates move: by the mobility, on a surface along it.
-    """
+    """(J -> J R, R, the way onto the surface); R R^T tells how freely the coordinates move."""
     root = np.sqrt(problem.mobility)
     if not problem.on_surface:
         root = np.repeat(root, 3)
         return lambda J: sparse.scaled(J, root), diags_array(root), np.zeros(V.size)
     feet, normals = problem.reference.closest(V)
     blocks = (np.eye(3) - normals[:, :, None] * normals[:, None, :]) * root[:, None, None]
-    count = len(V)
-    R = bsr_array((blocks, np.arange(count), np.arange(count + 1)), shape=(V.size, V.size)).tocsr()
+    R = bsr_array((blocks, np.arange(len(V)), np.arange(len(V) + 1)), shape=(V.size,) * 2).tocsr()
     lift = np.where(root[:, None] > 0, feet - V, 0.0).ravel()
     return lambda J: J @ R, R, lift
 
@@ -200,7 +180,7 @@ class Log:
 
     def __init__(self, given, tolerance, progress, callback):
         self.given, self.callback = given, callback
-        self.tolerance = max(tolerance, _rounding(given.V, given.Q))
+        self.tolerance = max(tolerance, given.rounding)
         self.history: list[Step] = []
         self.best = None
         self.stopped = False
@@ -213,10 +193,10 @@ class Log:
         s: the freedom, that of the mean ratios if None; residual: see `judge`.
         """
         given = self.given
-        net = V, given.Q, given.neighbours
         with timed(given.seconds, "check"):
             try:
                 s = nearest(given.goal, V, given.Q) if s is None else s
+                net = V, given.Q, given.neighbours
                 step = judge((kind, goal), *net, given.goal, s, size, residual)
             except ValueError:
                 return None
@@ -237,12 +217,6 @@ class Log:
         return self.stopped or (last.deviation <= self.tolerance and last.flips == 0)
 
 
-def _rounding(V, Q):
-    """The angle by which rounding of the coordinates may turn the shortest edge."""
-    shortest = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2).min()
-    return 8 * np.spacing(np.abs(V).max()) / shortest
-
-
 def nearest(goal: Goal, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """The freedom s of the goal that fits the mean logarithms of the net's ratios."""
     return freedom(goal, [np.log(ratio).mean() for ratio in measure.ratios(V, Q)])
@@ -252,40 +226,38 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
     """The goals of the first steps, one each; the last one is the goal itself."""
     if via == "jump":
         return [given.goal]
-    start = _means(given.goal, given.V, given.Q)
-    first = []
-    if via in STARTS:
-        middle = aim(**STARTS[via])
-        first = towards(middle, _means(middle, given.V, given.Q), stride)
-        if given.goal.kind == "angles":
-            start = [STARTS[via].get(k, x) for k, x in zip(("theta", "theta0"), start, strict=True)]
-    return first + towards(given.goal, start, stride)
-
-
-def _means(goal, V, Q):
-    """What the net has on average in place of the goal's values."""
-    means = [float(x.mean()) for x in (*measure.angles(V, Q), *np.log(measure.ratios(V, Q)))]
+    found = *measure.angles(given.V, given.Q), *np.log(measure.ratios(given.V, given.Q))
+    means = (float(x.mean()) for x in found)
     here = dict(zip(("theta", "theta0", "lam", "mu"), means, strict=True))
-    return means[:2] if goal.kind == "angles" else [here[goal.kind] for _ in goal.values]
+
+    def leg(goal):
+        names = ("theta", "theta0") if goal.kind == "angles" else (goal.kind,) * len(goal.values)
+        return towards(goal, [here[name] for name in names], stride)
+
+    first = leg(aim(**STARTS[via])) if via in STARTS else []
+    here |= STARTS.get(via, {}) if given.goal.kind == "angles" else {}
+    return first + leg(given.goal)
 
 
-def ratio(log: Log, options: Options) -> None:
-    """One run of the reduced formulation, until done or WORSE angle steps gained nothing."""
+def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float) -> None:
+    """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
+
+    goals: of the first steps, see `way`; limit: the most steps.
+    """
     given, final = log.given, log.given.goal
-    first = "shape" if options.shape_steps else "angle"
-    plan = [(first, goal) for goal in way(given, options.via, options.stride)]
-    plan += [("shape", final)] * (options.shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
+    plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
+    plan += [("shape", final)] * (shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
     V, before, s = given.V, None, None
     lowest, worse = np.inf, 0
     for kind, goal in plan:
-        if len(log.history) > options.limit:
+        if len(log.history) > limit:
             return
         if goal is not before:
             before, s = goal, nearest(goal, V, given.Q)
         take = shape_step if kind == "shape" else angle_step
         d, ds = take(given, V, goal, s)
-        possible = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
-        part = next(possible, 0.0)
+        parts = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
+        part = next(parts, 0.0)
         V, s = V + part * d, s + part * ds
         size = np.linalg.norm(d, axis=1).max()
         step = log.record(kind, goal, V, s if goal is final else None, size)

@@ -1,4 +1,7 @@
-"""Sparse matrices from local Jacobians, and their factorisation."""
+"""Sparse matrices from local Jacobians, and their factorisation.
+
+From `step` on: a smallest step of a large grid, by conjugate gradients without any matrix.
+"""
 
 from collections.abc import Callable
 
@@ -15,6 +18,7 @@ BLAS = ThreadpoolController()
 NARROW = 500  # up to this bandwidth a band is faster than a sparse factor
 MANY = 5000  # from here on nested dissection beats minimum degree
 LEAF = 16  # points that need no further division
+INEXACT = 1e-4  # relative residual of the conjugate gradients
 
 
 def rows(jacobian: np.ndarray, index: np.ndarray, columns: int) -> csr_array:
@@ -42,10 +46,9 @@ def scaled(A: csr_array, columns: np.ndarray | float) -> csr_array:
 def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
     """A function that solves A x = b, for a symmetric positive definite sparse A.
 
-    order: a permutation of the rows that keeps the factors sparse, such as that of
-    `nested_dissection`; without one, a band where A is narrow, else minimum degree on the
-    pattern of A + A^T, many times faster here than SuperLU's default ordering.  Pivots are
-    on the diagonal.
+    order: a permutation of the rows, such as that of `nested_dissection`; without one, a band
+    where A is narrow, else minimum degree on the pattern of A + A^T, many times faster here
+    than SuperLU's default.  Pivots are on the diagonal.
     """
     if order is None:
         return _banded(A) or _superlu(A.tocsc(), "MMD_AT_PLUS_A").solve
@@ -60,10 +63,7 @@ def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
 
 
 class Factor:
-    """`factor` for one matrix after the other with the same pattern: ordered only once.
-
-    points (k, d): where the unknowns are, an equal number in a row at each point.
-    """
+    """`factor` for matrices of one pattern, ordered only once; points: see `nested_dissection`."""
 
     def __init__(self, points):
         self.points, self.order = points, None
@@ -81,8 +81,7 @@ class Factor:
 
 
 def _superlu(A, ordering):
-    options = {"SymmetricMode": True}
-    return splu(A, permc_spec=ordering, diag_pivot_thresh=0.0, options=options)
+    return splu(A, ordering, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _banded(A):
@@ -107,9 +106,9 @@ def _banded(A):
 def nested_dissection(points: np.ndarray, A: csr_array) -> np.ndarray:
     """A permutation of the rows of A that keeps its factors sparse, by halving again and again.
 
-    points (k, d): where the unknowns are, A (b k, b k): b in a row at each point.  Of each
-    half of the points, those with a neighbour in the other half come last.  Twice as fast
-    as minimum degree from some 10 000 points on; it depends on the pattern of A only.
+    points (k, d): where the unknowns are, A (b k, b k): b in a row at each point; only its
+    pattern counts.  Of each half of the points, those with a neighbour in the other half come
+    last.  Twice as fast as minimum degree from some 10 000 points on.
     """
     count = len(points)
     block = A.shape[0] // count
@@ -143,11 +142,6 @@ def _halves(points, part):
     side = np.zeros(len(points), dtype=np.int64)
     side[ranked] = np.arange(len(order)) - np.repeat(start, size) >= np.repeat(size // 2, size)
     return side
-
-
-# --- a smallest step of a large grid: conjugate gradients without any matrix ----------------
-
-INEXACT = 1e-4  # relative residual of the conjugate gradients
 
 
 def step(A: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, int]:
@@ -191,16 +185,15 @@ def solve(
     A: np.ndarray, f: np.ndarray, tolerance: float = INEXACT, most: int = 300
 ) -> tuple[np.ndarray, int]:
     """(y, iterations) with J J^T y = f up to the relative residual: conjugate gradients."""
-    steps: list = []
 
     def flat(apply):
         shape = f.size, f.size
         return LinearOperator(shape, lambda x: apply(x.reshape(f.shape)).ravel(), dtype=float)
 
-    matrix, inverse = flat(lambda y: times(A, transposed(A, y))), flat(preconditioner(A))
-    how = {"rtol": tolerance, "maxiter": most, "M": inverse, "callback": steps.append}
+    matrix, M = flat(lambda y: times(A, transposed(A, y))), flat(preconditioner(A))
+    steps: list = []
     with BLAS.limit(limits=1, user_api="blas"):  # more threads only wait here
-        y, _ = cg(matrix, f.ravel(), **how)
+        y, _ = cg(matrix, f.ravel(), rtol=tolerance, maxiter=most, M=M, callback=steps.append)
     return y.reshape(f.shape), len(steps)
 
 
@@ -234,10 +227,7 @@ def preconditioner(A: np.ndarray) -> Callable:
 
 def _scale(A):
     """Entries 00, 10, 11 of the inverse Cholesky factors of the blocks of J J^T, (3, m, n)."""
-    d00, d01, d11 = (
-        2 * sum(np.einsum("kij,kij->ij", a[r], a[s]) for a in A)
-        for r, s in ((0, 0), (0, 1), (1, 1))
-    )
+    (d00, d01), (_, d11) = 2 * sum(np.einsum("rkij,skij->rsij", a, a) for a in A)
     i00, i11 = 1 / np.sqrt(d00), 1 / np.sqrt(d11 - d01**2 / d00)
     return np.stack([i00, -i11 * d01 / d00, i11])
 
