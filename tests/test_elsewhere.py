@@ -50,26 +50,6 @@ def lacking(name):
     return next((reasons[k] for k in ("", *wanted) if wanted and reasons[k]), "")
 
 
-@pytest.fixture(scope="module")
-def somebody(tmp_path_factory):
-    """The environment of a user with a set-up of his own, which must change nothing."""
-    home = tmp_path_factory.mktemp("a home")
-    (home / "matplotlibrc").write_text(
-        "backend: svg\nfont.size: 17\nlines.linewidth: 4\naxes.facecolor: red\n"
-        "savefig.bbox: tight\nfigure.dpi: 50\nsvg.fonttype: none\npath.simplify: True\n"
-        "mathtext.fontset: stix\nimage.cmap: jet\n"
-    )
-    start = home / "ipython" / "profile_default" / "startup"
-    start.mkdir(parents=True)
-    (start / "mine.py").write_text(
-        "print('hello'); import matplotlib as m; m.rcParams['font.size']=30"
-    )
-    places = {"HOME": home, "USERPROFILE": home, "MPLCONFIGDIR": home}
-    places |= {"MATPLOTLIBRC": home / "matplotlibrc", "IPYTHONDIR": home / "ipython"}
-    other = {"MPLBACKEND": "svg", "LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"}
-    return other | {"PYTHONHASHSEED": "7"} | {name: str(x) for name, x in places.items()}
-
-
 def in_setting(name, command, folder, more):
     """Run a command of this Python in a setting, and more of an environment."""
     if reason := lacking(name):

@@ -217,8 +217,3 @@ def test_no_room_and_no_function_outgrows_a_glance():
                 body = node.body[1:] if ast.get_docstring(node) else node.body
                 lines = body[-1].end_lineno - body[0].lineno + 1 if body else 0
                 assert lines <= 50, (path.name, node.name, lines)
-
-
-def test_the_library_draws_without_opengl():
-    code = "import sys, inetlib.plot, inetlib.publish; sys.exit('vtk' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0

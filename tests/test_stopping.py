@@ -4,7 +4,6 @@ Moments are not waited for but made: the process raises the signal itself, when 
 module, opens a file or starts another process (audit events), or in a function put in place.
 """
 
-import json
 import os
 import re
 import shutil
@@ -70,12 +69,15 @@ def left(folder):
 def test_modules_are_loaded_when_they_are_used():
     code = "import sys, inetlib, inetlib.start, inetlib.explorer; print(*sys.modules)\n"
     code += "print(inetlib.mesh.grid_quads(1, 1).shape, *sys.modules)\n"
-    code += "import inetlib.io; print(inetlib.NotConverged, *sys.modules)"
-    light, numpy, more = (set(line.split()) for line in python(ROOT, code).stdout.splitlines())
+    code += "import inetlib.io; print(inetlib.NotConverged, *sys.modules)\n"
+    code += "import inetlib.plot, inetlib.publish, inetlib.view; print(*sys.modules)"
+    lines = python(ROOT, code).stdout.splitlines()
+    light, numpy, more, pictures = (set(line.split()) for line in lines)
     packages = {"ezdxf", "matplotlib", "pyvista", "rhino3dm", "sympy", "vtkmodules"}
     assert "inetlib" in light and not light & {"numpy", "scipy", "importlib.metadata", *packages}
     assert "(1," in numpy and not numpy & {"igl", "scipy.interpolate", *packages}
     assert "'inetlib.solver.NotConverged'>" in more and not more & packages
+    assert not pictures & {"pyvista", "vtk", "vtkmodules"}  # they are drawn without OpenGL
     for name in [*inetlib.__all__, "__version__"]:
         assert name in dir(inetlib) and getattr(inetlib, name) is not None
     with pytest.raises(AttributeError, match="nothing"):
@@ -279,33 +281,11 @@ def test_redraw_is_stopped_at_other_moments(clone, code, cell):
     assert stopped(folder, before, done.returncode, done.stderr)
 
 
-def test_redraw_draws_alike_whatever_its_user_has_set(clone):
+def test_redraw_draws_alike_whatever_its_user_has_set(clone, somebody):
     folder = clone(SETTINGS)
-    home = folder / "home"
-    startup = home / "ipython" / "profile_default" / "startup"
-    startup.mkdir(parents=True)
-    hostile = "import matplotlib; matplotlib.rcParams['font.size'] = 30; print('hello')"
-    (startup / "x.py").write_text(hostile)
-    (startup.parent / "ipython_kernel_config.py").write_text(
-        "c.InteractiveShellApp.exec_lines = ['print(1)']"
-    )
-    (home / "matplotlibrc").write_text("font.size: 25")
-    kernel = home / "kernels" / "python3"
-    kernel.mkdir(parents=True)
-    wrong = {"argv": ["nothing"], "display_name": "wrong", "language": "python"}
-    (kernel / "kernel.json").write_text(json.dumps(wrong))
     for name in ("notebooks", "figures"):
         (folder / name / ".new-999999999-0a").write_text("left by a killed run")
-    done = python(
-        folder,
-        REDRAW,
-        TMPDIR=str(folder / "temporary"),
-        IPYTHONDIR=str(home / "ipython"),
-        MATPLOTLIBRC=str(home),
-        MPLBACKEND="svg",
-        JUPYTER_PATH=str(home),
-        PYTHONSTARTUP=str(startup / "x.py"),
-    )
+    done = python(folder, REDRAW, **somebody, TMPDIR=str(folder / "temporary"))
     assert done.returncode == 0, done.stderr
     (cell,) = nbformat.read(folder / "notebooks" / "a.ipynb", as_version=4).cells
     assert [output.text for output in cell.outputs] == ["10.0\n"]

@@ -14,6 +14,7 @@ from matplotlib.colors import rgb_to_hsv, to_rgb
 from matplotlib.image import imread
 
 from inetlib import explorer, mesh, plot, view
+from inetlib.explorer import notebook
 
 V = np.array([[i + 0.3 * j, j, 0.2 * i * j] for i in range(4) for j in range(4)], dtype=float)
 Q = mesh.grid_quads(3, 3)
@@ -41,13 +42,6 @@ def opengl(pyvista):
     works, sentence = view.available()
     if not works:
         pytest.skip(sentence)
-
-
-def test_importing_view_imports_neither_pyvista_nor_vtk():
-    code = (
-        "import sys, inetlib.view as v; sys.exit(any(m[:3] in ('vtk', 'pyv') for m in sys.modules))"
-    )
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
 
 
 def test_without_pyvista_the_message_names_the_extra(monkeypatch, fresh):
@@ -135,7 +129,7 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
     monkeypatch.setattr(view, "available", lambda: (True, ""))
     monkeypatch.setattr(view, "headless", lambda: not display)
     door = types.SimpleNamespace(port=1, nets={})
-    monkeypatch.setattr(explorer.notebook, "_open_door", lambda: door)
+    monkeypatch.setattr(notebook, "_open_door", lambda: door)
     monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
     if not session:
         monkeypatch.delenv("JPY_SESSION_NAME")
@@ -143,8 +137,8 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
     if not kernel:
         monkeypatch.delitem(sys.modules, "ipykernel")
     shown = explorer.show(m=3, n=1)
-    assert isinstance(shown, explorer.notebook.Live) is (live == "page")
-    kinds = {str: "window", explorer.notebook.Live: "page"}
+    assert isinstance(shown, notebook.Live) is (live == "page")
+    kinds = {str: "window", notebook.Live: "page"}
     result, forced, fixed = (explorer.turn(V, Q, live=x) for x in (None, True, False))
     assert kinds.get(type(result), "still") == live
     assert kinds[type(forced)] == ("page" if kernel else "window")
