@@ -98,11 +98,10 @@ def test_a_file_appears_whole_or_not_at_all(tmp_path):
 
 
 def test_a_folder_for_a_while(tmp_path):
-    with files.scratch(tmp_path) as folder:
+    with files.scratch(tmp_path) as folder, files.scratch(tmp_path) as other:
         (folder / "data").mkdir()
         (folder / "data" / "a").write_text("a")
-        with files.scratch(tmp_path) as other:  # it leaves the first alone
-            assert sorted(left(tmp_path)) == sorted([folder, other])
+        assert sorted(left(tmp_path)) == sorted([folder, other])
         files.clear()  # as when the process is stopped
         assert left(tmp_path) == []
     assert not {folder, other} & files.LIVE
@@ -119,33 +118,33 @@ def test_what_a_killed_process_left_is_removed_by_the_next(tmp_path):
     alive, other = tmp_path / f".new-{os.getppid()}-0a.obj", tmp_path / ".new-year"
     ours = tmp_path / f".new-{os.getpid()}-0a.obj"  # of a process that had our number
     for path in (alive, other, ours):
-        path.write_text("x")
+        path.touch()
     io.write(tmp_path / "net.obj", *examples.wavy_roof(2))
     assert sorted(os.listdir(tmp_path)) == sorted([alive.name, other.name, "net.obj"])
 
 
 MOMENTS = {
-    "while packages are loaded": (ON.format("import", "scipy.sparse"), True),
-    "in the search": (PUT.format("design.cover"), True),
-    "while the file is written": (ON.format("open", ".new-"), True),
-    "when it is written": (PUT.format("cli._say"), False),
+    "while packages are loaded": ON.format("import", "scipy.sparse"),
+    "in the search": PUT.format("design.cover"),
+    "while the file is written": ON.format("open", ".new-"),
+    "when it is written": PUT.format("cli._say"),
 }
 
 
 @posix
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_inet_is_stopped_with_one_sentence(tmp_path, moment):
-    code, early = MOMENTS[moment]
     (tmp_path / "net.obj").write_text("old")
-    done = python(tmp_path, code + RUN, *COVER, "--force")
-    claim = ", nothing was written" * early
+    done = python(tmp_path, MOMENTS[moment] + RUN, *COVER, "--force")
+    late = moment == "when it is written"
+    claim = "" if late else ", nothing was written"
     assert (done.returncode, done.stdout) == (130, "")
     assert done.stderr == f"inet: stopped{claim}\n"
     assert os.listdir(tmp_path) == ["net.obj"]
-    if early:
-        assert (tmp_path / "net.obj").read_text() == "old"
-    else:
+    if late:
         assert len(io.net(tmp_path / "net.obj").Q) > 30
+    else:
+        assert (tmp_path / "net.obj").read_text() == "old"
 
 
 @posix
@@ -238,13 +237,9 @@ def stopped(folder, before, code, errors):
 def test_redraw_is_stopped_with_its_kernel_and_what_that_has_begun(clone):
     folder = clone(BUSY)
     before = (folder / "notebooks" / "a.ipynb").read_bytes()
-    process = subprocess.Popen(
-        [sys.executable, "tools/redraw.py"],
-        cwd=folder,
-        env=os.environ | {"TMPDIR": str(folder / "temporary")},
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    options = {"env": os.environ | {"TMPDIR": str(folder / "temporary")}, "cwd": folder}
+    command = [sys.executable, "tools/redraw.py"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, **options)
     busy = folder / "figures" / "busy"
     while not (busy.exists() and busy.read_text()) and process.poll() is None:
         time.sleep(0.05)
