@@ -63,13 +63,11 @@ def quick(app_module, monkeypatch):
 
 
 @pytest.fixture
-def gate(app_module, monkeypatch):
+def gate(app_module, quick, monkeypatch):
     """Searches begin at once and wait after every step, until the event is set."""
     event = threading.Event()
-    monkeypatch.setattr(app_module, "REST", 0.01)
-    monkeypatch.setattr(
-        app_module, "time", types.SimpleNamespace(sleep=lambda _: event.wait(LIMIT))
-    )
+    clock = types.SimpleNamespace(sleep=lambda _: event.wait(LIMIT))
+    monkeypatch.setattr(app_module, "time", clock)
     yield event
     event.set()
 
@@ -298,9 +296,8 @@ async def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(app, g
     assert np.array_equal(app.session.V, start)
 
 
-async def test_stop_is_heard_before_the_first_step(app, app_module, monkeypatch):
+async def test_stop_is_heard_before_the_first_step(app, app_module, quick, monkeypatch):
     monkeypatch.setattr(app_module, "REST", 0.2)  # while it waits for further changes
-    monkeypatch.setattr(app_module, "PACE", 0.001)
     await arrived(app, "?m=4&n=4")
     await change(app, kind="freeform")
     await until(lambda: app.state.searching)
