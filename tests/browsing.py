@@ -8,6 +8,8 @@ import sys
 import numpy as np
 from PIL import Image
 
+from inetlib.explorer import choices
+
 OPTIONS = [
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -69,9 +71,11 @@ class Reader:
         """The mean angles as the page shows them, degrees, two texts."""
         return [self.text(f".out-mean-{name}").rstrip("\u00b0") for name in ("theta", "theta0")]
 
-    def query(self):
-        """The link's parameters."""
-        return self.page.evaluate("trame.state.get('link')")
+    def choice(self):
+        """What the page's link says."""
+        choice, problems = choices.parse(self.page.evaluate("trame.state.get('link')"))
+        assert problems == []
+        return choice
 
     def net(self):
         """V, Q made by the three lines of Python that the page offers."""
@@ -108,3 +112,9 @@ class Reader:
 
 def image(data):
     return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
+
+
+def is_drawn(picture):
+    """Whether there is a net before a plain background."""
+    share = (np.abs(picture - picture[-5, 5]).sum(axis=-1) > 30).mean()
+    return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 50

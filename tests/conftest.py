@@ -49,3 +49,28 @@ def chromium():
         found = driver.chromium.launch(executable_path=path, args=OPTIONS)
         yield found
         found.close()
+
+
+@pytest.fixture(scope="session")
+def somebody(tmp_path_factory):
+    """The environment of a user with a set-up of his own, which must change nothing."""
+    home = tmp_path_factory.mktemp("a home")
+    mine = "print('hello'); import matplotlib as m; m.rcParams['font.size']=30"
+    kernel = '{"argv": ["nothing"], "display_name": "wrong", "language": "python"}'
+    lines = "c.InteractiveShellApp.exec_lines = ['print(1)']"
+    looks = "backend: svg\nfont.size: 17\nlines.linewidth: 4\naxes.facecolor: red\n"
+    looks += "savefig.bbox: tight\nfigure.dpi: 50\nsvg.fonttype: none\npath.simplify: True\n"
+    looks += "mathtext.fontset: stix\nimage.cmap: jet\n"
+    profile = home / "profile_default"
+    for path, text in {
+        home / "matplotlibrc": looks,
+        profile / "startup" / "mine.py": mine,
+        profile / "ipython_kernel_config.py": lines,
+        home / "kernels" / "python3" / "kernel.json": kernel,
+    }.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    places = "HOME", "USERPROFILE", "MPLCONFIGDIR", "MATPLOTLIBRC", "IPYTHONDIR", "JUPYTER_PATH"
+    other = {"MPLBACKEND": "svg", "LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"}
+    other |= {"PYTHONHASHSEED": "7", "PYTHONSTARTUP": str(profile / "startup" / "mine.py")}
+    return other | dict.fromkeys(places, str(home))

@@ -1,17 +1,17 @@
 """The explorer in a real browser, as a person uses it (Chromium; skipped where there is none)."""
 
+import functools
 import os
 import re
 import signal
 import socket
 import statistics
-import urllib.request
 import xml.etree.ElementTree as tree
 from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from browsing import Reader, image, start
+from browsing import Reader, image, is_drawn, start
 
 from inetlib import examples, io, measure, mesh
 from inetlib.explorer import choices, session
@@ -20,13 +20,8 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """An empty folder: the server's working and temporary directory."""
-    return tmp_path_factory.mktemp("empty")
-
-
-@pytest.fixture(scope="module")
-def address(folder):
+def address(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("empty")
     environment = os.environ | {"TMPDIR": str(folder)}
     process, found = start(folder=folder, environment=environment)
     yield found
@@ -39,17 +34,7 @@ def address(folder):
 @pytest.fixture(scope="module")
 def contexts(chromium):
     """contexts(options) -> a browser context, the same for the same options: its cache is warm."""
-    known = {}
-
-    def context(**options):
-        key = str(sorted(options.items()))
-        if key not in known:
-            known[key] = chromium.new_context(**options)
-        return known[key]
-
-    yield context
-    for context in known.values():
-        context.close()
+    return functools.cache(chromium.new_context)
 
 
 @pytest.fixture
@@ -76,8 +61,7 @@ def judge(reader):
     for shown, found in zip(reader.angles(), measure.angles(V, Q), strict=True):
         assert shown == f"{np.degrees(found.mean()):.6f}"
     assert reader.text(".out-flips") == str(measure.quality(V, Q).flips)
-    choice, problems = choices.parse(reader.query())
-    assert problems == []
+    choice = reader.choice()
     for name, found in zip(("theta", "theta0"), measure.angles(V, Q), strict=True):
         off = np.abs(np.degrees(found) - getattr(choice, name)).max()
         shown = float(reader.text(f".out-off-{name}").rstrip("\u00b0").replace("\u2212", "-"))
@@ -85,30 +69,15 @@ def judge(reader):
     return V, Q
 
 
-def is_drawn(picture):
-    """Whether there is a net before a plain background."""
-    background = picture[-5, 5]
-    share = (np.abs(picture - background).sum(axis=-1) > 30).mean()
-    colours = len(np.unique(picture.reshape(-1, 3), axis=0))
-    return 0.03 < share < 0.97 and colours > 50
-
-
-def test_the_page_shows_a_net_and_its_numbers(tab):
-    reader = tab()
-    assert is_drawn(reader.picture())
-    assert reader.angles() == ["60.000000", "60.000000"]
-    judge(reader)
-
-
 def test_dragging_both_sliders_changes_the_net(tab):
     reader = tab("kind=isothermal&surface=minimal&m=12&n=16")
     before = reader.picture()
     reader.drag("theta", 0.5)
-    theta = choices.parse(reader.query())[0].theta
+    theta = reader.choice().theta
     assert theta == pytest.approx(90, abs=3)
     reader.drag("theta0", 0.4)
-    assert choices.parse(reader.query())[0].theta0 == pytest.approx(72, abs=3)
-    assert choices.parse(reader.query())[0].theta == theta
+    choice = reader.choice()
+    assert choice.theta0 == pytest.approx(72, abs=3) and choice.theta == theta
     judge(reader)
     after = reader.picture()
     assert is_drawn(after) and np.abs(after - before).mean() > 1
@@ -116,6 +85,8 @@ def test_dragging_both_sliders_changes_the_net(tab):
 
 def test_a_typed_value_is_taken_and_a_wrong_one_is_explained(tab):
     reader = tab()
+    assert is_drawn(reader.picture()) and reader.angles() == ["60.000000", "60.000000"]
+    judge(reader)
     reader.type("theta", "72.25")
     assert reader.angles()[0] == "72.250000"
     judge(reader)
@@ -126,13 +97,9 @@ def test_a_typed_value_is_taken_and_a_wrong_one_is_explained(tab):
         assert reader.angles()[0] == "72.250000"
     reader.type("m", "2.5")
     assert "a whole number from 3 to 150" in reader.text(".out-alert")
-
-
-def test_the_lock_makes_both_angles_one(tab):
-    reader = tab("theta=70&theta0=40")
     reader.page.locator(".in-lock input").check()
     reader.settled()
-    assert reader.angles() == ["70.000000", "70.000000"]
+    assert reader.angles() == ["72.250000", "72.250000"]
     reader.type("theta0", "50")
     assert reader.angles() == ["50.000000", "50.000000"]
     lam, mu = re.findall(r"= ([\d.]+)", reader.text(".out-ratios"))
@@ -161,7 +128,7 @@ def test_the_profile_can_be_edited(tab):
     reader = tab("kind=revolution&m=8&n=6")
     reader.page.get_by_role("button", name="barrel").click()
     reader.settled()
-    assert choices.parse(reader.query())[0].radii == choices.PROFILES["barrel"]
+    assert reader.choice().radii == choices.PROFILES["barrel"]
     reader.type("radius0", "1.25")
     V, _ = judge(reader)
     assert np.hypot(*V[:, :2].T).max() > 1.24
@@ -177,7 +144,7 @@ def test_families_parallelograms_and_shading_can_be_shown(tab):
         reader.settled()
         seen.append(reader.picture())
         assert np.abs(seen[-1] - seen[-2]).mean() > 0.2, name
-    choice = choices.parse(reader.query())[0]
+    choice = reader.choice()
     assert choice.families == choices.FAMILIES and choice.parallelograms and choice.shade
 
 
@@ -189,7 +156,7 @@ def test_both_ends_of_both_sliders_leave_a_page_that_works(tab):
             for name, key in zip(("theta", "theta0"), keys, strict=True):
                 reader.page.locator(f".in-{name} [role=slider]").press(key)
             reader.settled()
-            choice = choices.parse(reader.query())[0]
+            choice = reader.choice()
             wanted = [1 if key == "Home" else 179 for key in keys]
             assert [choice.theta, choice.theta0] == wanted
             if not reader.page.locator(".out-problem").count():
@@ -220,31 +187,29 @@ def test_an_optimisation_runs_can_be_stopped_and_run_again(tab):
     assert reader.angles() == ["60.000000", "45.000000"]
 
 
-def save(reader, words, tmp_path):
-    reader.page.locator(".in-save").click()
-    with reader.page.expect_download() as waiting:
-        reader.page.locator(".v-list-item", has_text=words).click()
-    path = tmp_path / waiting.value.suggested_filename
-    waiting.value.save_as(path)
-    return path
-
-
 def test_what_is_saved_is_what_is_shown(tab, tmp_path):
     reader = tab("kind=revolution&m=8&n=6&theta=75&theta0=60")
+
+    def save(suffix):
+        reader.page.locator(".in-save").click()
+        items = reader.page.locator(".v-overlay__content .v-list-item-title").all_text_contents()
+        assert [f".{item.split(',')[0].strip().lower()}" for item in items] == list(session.SAVED)
+        with reader.page.expect_download() as waiting:
+            reader.page.locator(".v-list-item", has_text=suffix[1:].upper()).click()
+        path = tmp_path / waiting.value.suggested_filename
+        waiting.value.save_as(path)
+        assert path.suffix == suffix
+        return path
+
     V, Q = judge(reader)
-    path = save(reader, "OBJ", tmp_path)
-    assert path.suffix == ".obj"
-    W, R = io.read(path)
-    np.testing.assert_array_equal(W, V)
-    np.testing.assert_array_equal(R, Q)
-    svg = save(reader, "SVG", tmp_path)
-    root = tree.fromstring(svg.read_text(encoding="utf-8"))
+    assert all(map(np.array_equal, io.read(save(".obj")), (V, Q)))
+    root = tree.fromstring(save(".svg").read_text(encoding="utf-8"))
     assert root.tag.endswith("svg") and len(list(root.iter())) > len(Q)
-    assert is_drawn(image(save(reader, "PNG", tmp_path).read_bytes()))
+    assert is_drawn(image(save(".png").read_bytes()))
 
 
 def test_the_code_and_the_link_can_be_copied(tab, address):
-    permissions = ["clipboard-read", "clipboard-write"]
+    permissions = "clipboard-read", "clipboard-write"
     reader = tab("kind=plane&map=exp&theta=80&theta0=50", permissions=permissions)
     reader.page.get_by_title("Copy link").click()
     reader.page.locator(".out-alert", has_text="link copied").wait_for()
@@ -261,26 +226,18 @@ def test_the_code_and_the_link_can_be_copied(tab, address):
     assert len(code.splitlines()) == 3 and code == reader.page.evaluate("trame.state.get('code')")
 
 
-def test_the_keyboard_turns_the_view_and_moves_sliders(tab):
+def test_the_keyboard_and_the_mouse_turn_the_view_and_the_button_fits_it_again(tab):
     reader = tab("kind=isothermal&surface=sphere&m=8&n=10")
-    before = reader.picture()
-    reader.page.locator(".ex-view").focus()
+    fitted = before = reader.picture()
+    view = reader.page.locator(".ex-view")
+    view.focus()
     for key in ("ArrowLeft", "ArrowUp", "+"):
         reader.page.keyboard.press(key)
         reader.settled()
         after = reader.picture()
         assert np.abs(after - before).mean() > 0.3, key
         before = after
-    slider = reader.page.locator(".in-theta [role=slider]")
-    slider.press("ArrowRight")
-    reader.settled()
-    assert choices.parse(reader.query())[0].theta == 61
-
-
-def test_the_mouse_turns_the_view_and_the_button_fits_it_again(tab):
-    reader = tab("kind=isothermal&surface=sphere&m=8&n=10")
-    before = reader.picture()
-    box = reader.page.locator(".ex-view").bounding_box()
+    box = view.bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     reader.page.mouse.move(x, y)
     reader.page.mouse.down()
@@ -290,7 +247,10 @@ def test_the_mouse_turns_the_view_and_the_button_fits_it_again(tab):
     assert np.abs(reader.picture() - before).mean() > 0.5
     reader.page.locator(".in-fit").click()
     reader.settled()
-    assert np.abs(reader.picture() - before).mean() < 0.5
+    assert np.abs(reader.picture() - fitted).mean() < 0.5
+    reader.page.locator(".in-theta [role=slider]").press("ArrowRight")
+    reader.settled()
+    assert reader.choice().theta == 61
 
 
 def test_a_finger_can_set_a_slider_on_a_small_screen(tab):
@@ -300,7 +260,7 @@ def test_a_finger_can_set_a_slider_on_a_small_screen(tab):
     box = track.bounding_box()
     reader.page.touchscreen.tap(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     reader.settled()
-    assert choices.parse(reader.query())[0].theta == pytest.approx(90, abs=3)
+    assert reader.choice().theta == pytest.approx(90, abs=3)
     assert reader.page.evaluate("document.documentElement.scrollWidth") <= 420
 
 
@@ -355,8 +315,6 @@ def test_nothing_overlaps_and_nothing_is_clipped(tab, size):
         assert reader.page.evaluate(CROWDED) == [], query
 
 
-# --- speed --------------------------------------------------------------------------------
-
 SEEN = """() => {
   let drawn = 0;
   for (const name of ['drawArrays', 'drawArraysInstanced']) {
@@ -397,12 +355,10 @@ def test_from_slider_to_picture(tab, side, capsys):
         reader.page.wait_for_timeout(60)
     reader.settled()
     judge(reader)
+    middle, low, high = statistics.median(times), min(times), max(times)
+    words = f"slider to picture, {side * side} quads: median {middle:.0f} ms of {len(times)} moves"
     with capsys.disabled():  # printed, not asserted: this machine may be busy
-        print(
-            f"\nslider to picture, {side * side} quads: median {statistics.median(times):.0f} ms "
-            f"of {len(times)} moves ({min(times):.0f} to {max(times):.0f})"
-        )
-    assert len(times) == 20 and min(times) > 0
+        print(f"\n{words} ({low:.0f} to {high:.0f})")
 
 
 def test_a_file_of_the_command_line_is_covered_and_sigint_ends_everything(chromium, tmp_path):
@@ -426,31 +382,3 @@ def test_a_file_of_the_command_line_is_covered_and_sigint_ends_everything(chromi
     with pytest.raises(OSError), socket.create_connection(("127.0.0.1", urlsplit(address).port)):
         pass
     assert os.listdir(tmp_path) == ["my roof.obj"] and path.read_bytes() == before
-
-
-def test_a_closed_tab_is_forgotten(chromium, tab, address):
-    """Its search stops: the thread that it ran in is free for the next."""
-    reader = tab("kind=freeform&m=60&n=60")
-    reader.page.locator(".in-run").click()
-    reader.page.locator(".out-progress", has_text="step").wait_for()
-    reader.page.close()
-    again = Reader(chromium.new_page(), address, "kind=freeform&m=6&n=6")
-    assert "converged in" in again.text(".out-message")
-    again.page.close()
-
-
-def test_only_this_machine_is_served(address):
-    port = urlsplit(address).port
-    with urllib.request.urlopen(address) as answer:
-        assert answer.status == 200
-    others = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None)}
-    for host in others - {"127.0.0.1", "::1"}:
-        with pytest.raises(OSError):
-            socket.create_connection((host, port), timeout=2).close()
-
-
-def test_session_and_page_agree_on_what_can_be_saved(tab):
-    reader = tab("m=8&n=8")
-    reader.page.locator(".in-save").click()
-    items = reader.page.locator(".v-overlay__content .v-list-item-title").all_inner_texts()
-    assert [f".{item.split(',')[0].lower()}" for item in items] == list(session.SAVED)

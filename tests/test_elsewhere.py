@@ -50,26 +50,6 @@ def lacking(name):
     return next((reasons[k] for k in ("", *wanted) if wanted and reasons[k]), "")
 
 
-@pytest.fixture(scope="module")
-def somebody(tmp_path_factory):
-    """The environment of a user with a set-up of his own, which must change nothing."""
-    home = tmp_path_factory.mktemp("a home")
-    (home / "matplotlibrc").write_text(
-        "backend: svg\nfont.size: 17\nlines.linewidth: 4\naxes.facecolor: red\n"
-        "savefig.bbox: tight\nfigure.dpi: 50\nsvg.fonttype: none\npath.simplify: True\n"
-        "mathtext.fontset: stix\nimage.cmap: jet\n"
-    )
-    start = home / "ipython" / "profile_default" / "startup"
-    start.mkdir(parents=True)
-    (start / "mine.py").write_text(
-        "print('hello'); import matplotlib as m; m.rcParams['font.size']=30"
-    )
-    places = {"HOME": home, "USERPROFILE": home, "MPLCONFIGDIR": home}
-    places |= {"MATPLOTLIBRC": home / "matplotlibrc", "IPYTHONDIR": home / "ipython"}
-    other = {"MPLBACKEND": "svg", "LC_ALL": "de_DE.UTF-8", "TZ": "Asia/Tokyo"}
-    return other | {"PYTHONHASHSEED": "7"} | {name: str(x) for name, x in places.items()}
-
-
 def in_setting(name, command, folder, more):
     """Run a command of this Python in a setting, and more of an environment."""
     if reason := lacking(name):
@@ -102,9 +82,13 @@ def agree(one, two):
     return one.shape == two.shape and np.abs(one - two).max() <= 1e-6 * np.ptp(one)
 
 
-def check(name, here, tmp_path, somebody):
-    more = somebody if name == "all of them" else {}
-    kernels, rewritten, there = drawn(name, tmp_path, more)
+def marked(name):
+    return pytest.param(name, marks=getattr(pytest.mark, "elsewhere" if name in SHORT else "long"))
+
+
+@pytest.mark.parametrize("name", [marked(name) for name in SETTINGS])
+def test_another_processor_gives_the_same(name, here, tmp_path, somebody):
+    kernels, rewritten, there = drawn(name, tmp_path, somebody if name == "all of them" else {})
     wanted = SETTINGS[name].get("OPENBLAS_CORETYPE")
     assert wanted is None or set(kernels) <= {wanted, ALSO.get(wanted)}
     assert set(there) == set(here)
@@ -112,18 +96,6 @@ def check(name, here, tmp_path, somebody):
     if not outputs.PINNED:
         rewritten = {k: x for k, x in rewritten.items() if not set(x) <= {"svg", "png"}}
     assert rewritten == {}
-
-
-@pytest.mark.elsewhere
-@pytest.mark.parametrize("name", SHORT)
-def test_another_processor_gives_the_same(name, here, tmp_path, somebody):
-    check(name, here, tmp_path, somebody)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", [name for name in SETTINGS if name not in SHORT])
-def test_every_other_processor_gives_the_same(name, here, tmp_path, somebody):
-    check(name, here, tmp_path, somebody)
 
 
 @pytest.mark.elsewhere
@@ -152,9 +124,8 @@ def test_one_parameter_rewrites_one_figure(tmp_path):
     assert not outputs.PINNED or before == {path: path.read_bytes() for path in before}
     publish.save(fig08.draw(rows=6), figures)
     changed = {path.name for path in before if path.read_bytes() != before[path]}
-    assert changed - {"fig04.svg", "fig04.png"} == {
-        *("fig08.svg", "fig08.png", "fig08.npz", "manifest.json")
-    }
+    changed -= {"fig04.svg", "fig04.png"}
+    assert changed == {"fig08.svg", "fig08.png", "fig08.npz", "manifest.json"}
 
 
 @pytest.mark.long

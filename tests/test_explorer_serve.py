@@ -12,7 +12,7 @@ import sys
 import threading
 import types
 import warnings
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, closing
 from dataclasses import asdict
 from itertools import product
 from urllib.parse import parse_qsl, urlencode, urljoin, urlsplit
@@ -20,13 +20,13 @@ from urllib.parse import parse_qsl, urlencode, urljoin, urlsplit
 import numpy as np
 import pytest
 from matplotlib.image import imread
+from test_explorer import built
 
 from inetlib import examples, io, measure, mesh, surfaces, view
 from inetlib.explorer import choices, look, nets, notebook, plates
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.session import Session
 
-NEEDED = "pyvista", "trame", "trame_vtk", "trame_vuetify", "aiohttp"
 HOST = "127.0.0.1"
 LIMIT = 60  # seconds after which a test gives up: nothing here takes so long
 SIDE = {"position": [3.0, -4.0, 5.0], "focalPoint": [0.0, 0.0, 0.0]}
@@ -37,7 +37,7 @@ def serve():
     """The module `inetlib.explorer.serve`, where its packages are installed."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of other people's packages
-        for name in NEEDED:
+        for name in ("pyvista", "trame", "trame_vtk", "trame_vuetify", "aiohttp"):
             pytest.importorskip(name, reason=f"{name}, of the extra `view`, is not installed")
         from inetlib.explorer import serve
     return serve
@@ -45,7 +45,6 @@ def serve():
 
 @pytest.fixture(scope="module")
 def app_module(serve):
-    """The module `inetlib.explorer.app`."""
     return sys.modules[serve.App.__module__]
 
 
@@ -64,19 +63,16 @@ def quick(app_module, monkeypatch):
 
 
 @pytest.fixture
-def gate(app_module, monkeypatch):
+def gate(app_module, quick, monkeypatch):
     """Searches begin at once and wait after every step, until the event is set."""
     event = threading.Event()
-    monkeypatch.setattr(app_module, "REST", 0.01)
-    monkeypatch.setattr(
-        app_module, "time", types.SimpleNamespace(sleep=lambda _: event.wait(LIMIT))
-    )
+    clock = types.SimpleNamespace(sleep=lambda _: event.wait(LIMIT))
+    monkeypatch.setattr(app_module, "time", clock)
     yield event
     event.set()
 
 
 async def until(condition):
-    """Wait until it holds."""
     async with asyncio.timeout(LIMIT):
         while not condition():
             await asyncio.sleep(0.005)
@@ -125,7 +121,7 @@ def app(shared, run):
 
 
 async def arrived(app, query="", dark=False):
-    """A browser has come, and the first net is shown."""
+    """A browser has come, and the net is shown."""
     app.arrive(query, dark, 1.5)
     await until(lambda: app.state.numbers and not app.state.searching)
 
@@ -135,18 +131,6 @@ async def change(app, **values):
     with app.state:
         app.state.update(values)
     await asyncio.sleep(0)
-
-
-def made(**values):
-    """A session with the net of these values, made without a tab."""
-    session = Session()
-    assert session.change(**values) == []
-    if session.must_search:
-        session.search(session.begin())
-    else:
-        session.construct()
-    assert session.problem == ""
-    return session
 
 
 def texts(session):
@@ -165,7 +149,7 @@ def shown(app):
 
 async def test_a_tab_shows_the_net_of_its_link(app):
     await arrived(app, "?theta=50&map=exp&m=5&n=4&families=d1")
-    alone = made(theta=50, map="exp", m=5, n=4, families="d1")
+    alone = built(theta=50, map="exp", m=5, n=4, families="d1")
     assert np.array_equal(app.session.V, alone.V)
     assert app.state.numbers == texts(alone) and app.state.message == alone.message
     assert shown(app) == echo(alone.choice)
@@ -175,25 +159,23 @@ async def test_a_tab_shows_the_net_of_its_link(app):
         assert words.startswith("<svg")
 
 
-CHANGES = {
-    "slider": {"theta": 70},
-    "field": {"theta0": "70.25"},
-    "lock": {"lock": True, "theta": 80.0},
-    "size": {"m": 7.0, "n": "3"},
-    "sheet": {"kind": "isothermal", "surface": "rolled", "bend": 200},
-    "image": {"kind": "isothermal", "moebius": True, "pz": 2.5},
-    "profile": {"kind": "revolution", "radii": [1.0, 1.1, 1.2, 1.1, 1.0, 0.9, 0.8]},
-    "radius in a field": {"kind": "revolution", "radii": [0.9, "1.1", 1, 1, 1, 1, 1]},
-    "families": {"families": ["d2", "u"]},
-    "looks": {"parallelograms": True, "shade": True},
-}
+CHANGES = [
+    {"theta": 70},
+    {"theta0": "70.25"},
+    {"lock": True, "theta": 80.0},
+    {"m": 7.0, "n": "3"},
+    {"kind": "isothermal", "surface": "rolled", "bend": 200},
+    {"kind": "isothermal", "moebius": True, "pz": 2.5},
+    {"kind": "revolution", "radii": [0.9, "1.1", 1.2, 1.1, 1, 1, 0.8]},
+    {"families": ["d2", "u"], "parallelograms": True, "shade": True},
+]
 
 
-@pytest.mark.parametrize("name", CHANGES)
-async def test_a_change_of_the_page_changes_net_numbers_code_and_link(app, name):
+@pytest.mark.parametrize("values", CHANGES, ids=lambda values: next(reversed(values)))
+async def test_a_change_of_the_page_changes_net_numbers_code_and_link(app, values):
     await arrived(app, "?m=6&n=5")
-    await change(app, **CHANGES[name])
-    alone = made(**{"m": 6, "n": 5} | CHANGES[name])
+    await change(app, **values)
+    alone = built(**{"m": 6, "n": 5} | values)
     await until(lambda: app.state.link == choices.link(alone.choice))
     await until(lambda: app.state.numbers == texts(alone))
     assert np.array_equal(app.session.V, alone.V) and app.state.code == alone.code()
@@ -237,14 +219,22 @@ async def test_two_tabs_share_nothing(serve, run):
         await until(lambda: two.state.numbers["theta"] == "80")
 
 
-async def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(app):
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"kind": "revolution", "theta": 179.5, "theta0": 90},
+        {"kind": "cover", "source": "file"},  # none was named
+    ],
+)
+async def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(app, quick, values):
     await arrived(app, "?m=4&n=4")
     numbers, V = app.state.numbers, app.session.V
-    await change(app, kind="revolution", theta=179.5, theta0=90)
+    await change(app, **values)
     await until(lambda: app.state.problem)
     assert app.state.problem.startswith("no net: ") and app.session.V is V
+    assert ("file" in app.state.problem) is ("source" in values)
     assert app.state.numbers == numbers and not app.state.searching
-    await change(app, theta=70)
+    await change(app, kind="plane", theta=70)
     await until(lambda: app.state.numbers["theta"] == "70")
     assert app.state.problem == ""
 
@@ -278,13 +268,12 @@ async def test_what_goes_wrong_unexpectedly_is_said(app, quick, monkeypatch, cap
 @pytest.mark.parametrize("values", [{"kind": "freeform", "m": 5, "n": 4}, {"kind": "cover"}])
 async def test_a_search_runs_to_its_end(app, quick, values):
     values = {"quads": 60, "theta": 75} | values
-
     await arrived(app, "?m=4&n=4")
     assert not app.state.can_search
     await change(app, **values)
     await until(lambda: app.state.searching)
     await until(lambda: not app.state.searching)
-    alone = made(**{"m": 4, "n": 4} | values)
+    alone = built(**{"m": 4, "n": 4} | values)
     assert np.array_equal(app.session.V, alone.V)
     assert app.state.message == alone.message and app.state.can_search
     assert app.state.numbers == texts(alone)
@@ -307,10 +296,8 @@ async def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(app, g
     assert np.array_equal(app.session.V, start)
 
 
-async def test_stop_is_heard_before_the_first_step(app, app_module, monkeypatch):
+async def test_stop_is_heard_before_the_first_step(app, app_module, quick, monkeypatch):
     monkeypatch.setattr(app_module, "REST", 0.2)  # while it waits for further changes
-    monkeypatch.setattr(app_module, "PACE", 0.001)
-
     await arrived(app, "?m=4&n=4")
     await change(app, kind="freeform")
     await until(lambda: app.state.searching)
@@ -331,20 +318,13 @@ async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, 
     await until(lambda: app.state.progress == "start")
     await change(app, kind="plane")
     await until(lambda: not app.state.searching)
-    alone = made(m=5, n=5, theta=100)
+    alone = built(m=5, n=5, theta=100)
     assert app.state.numbers == texts(alone) and not over.is_set()
     gate.set()
     await until(over.is_set)
     await asyncio.sleep(0.02)  # for what the thread may have left to do here
     assert np.array_equal(app.session.V, alone.V) and app.state.numbers == texts(alone)
     assert app.state.message == alone.message and not app.state.searching
-
-
-async def test_a_search_that_fails_is_over_and_says_why(app, quick):
-    await arrived(app, "?m=4&n=4")
-    await change(app, kind="cover", source="file")  # none was named
-    await until(lambda: app.state.problem)
-    assert "file" in app.state.problem and not app.state.searching
 
 
 async def test_closing_a_tab_ends_its_search_and_forgets_it(serve, run, gate):
@@ -370,7 +350,7 @@ async def test_a_closed_tab_leaves_its_scene_to_one_other_tab_which_shows_its_ow
         for app, size in ((second, 5), (third, 6)):
             await arrived(app, f"?m={size}&n=2&families=u,v")
         for app, size in ((second, 5), (third, 6)):
-            assert np.allclose(app.scene.faces.points, made(m=size, n=2).V, atol=1e-6)
+            assert np.allclose(app.scene.faces.points, built(m=size, n=2).V, atol=1e-6)
             assert app.scene.faces.n_cells == 2 * size
             assert app.scene.curves.n_cells == 3 * size + 2 * (size + 1)
             assert app.scene.plotter.background_color == look.LIGHT.background
@@ -401,25 +381,21 @@ async def test_a_given_net_is_shown_and_never_changed(serve, run):
         assert not app.state.can_search and list(app.state.families) == ["d1", "d2"]
 
 
-@pytest.mark.parametrize("suffix", [".obj", ".off", ".svg", ".png"])
-async def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page(app, suffix):
-    await arrived(app, "?kind=isothermal&m=4&n=3&families=d1")
-    away = np.array(SIDE["position"])
-    sight = np.arctan2(away[1], away[0]), np.arcsin(away[2] / np.linalg.norm(away))
-    assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
-    above = {"position": [1, 2, 9.0], "focalPoint": [1, 2, 0]}
-    assert bytes(app.save(suffix, above)) == app.session.save(suffix)
-    assert app.state.alert == ""
-
-
 BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".stl")] + [
     (".svg", camera)
     for camera in (None, {}, [], "up", {"position": [1, 2, 3]}, SIDE | {"position": [1, 2]})
 ]
 
 
-async def test_what_cannot_be_saved_is_a_sentence(app):
-    await arrived(app, "?m=4&n=3")
+async def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page_or_a_sentence(app):
+    await arrived(app, "?kind=isothermal&m=4&n=3&families=d1")
+    away = np.array(SIDE["position"])
+    sight = np.arctan2(away[1], away[0]), np.arcsin(away[2] / np.linalg.norm(away))
+    above = {"position": [1, 2, 9.0], "focalPoint": [1, 2, 0]}
+    for suffix in (".obj", ".off", ".svg", ".png"):
+        assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
+        assert bytes(app.save(suffix, above)) == app.session.save(suffix)
+    assert app.state.alert == ""
     for suffix, camera in BAD_SAVES:
         app.state.alert = ""
         assert app.save(suffix, camera) is None
@@ -566,22 +542,18 @@ async def test_all_that_a_page_loads_is_there_for_a_given_net_too(house):
         assert answer.status == 404
 
 
-OTHERS = [
-    {"Host": "evil.example"},
-    {"Host": "evil.example:{port}"},
-    {"Host": "127.0.0.1.evil.example"},
-    {"Host": "localhost.evil.example:{port}"},
-    {"Host": "127.0.0.2"},
-    {"Host": "0.0.0.0:{port}"},
-    {"Host": ""},
-    {"Origin": "http://evil.example"},
-    {"Origin": "null"},
-    {"Origin": "http://127.0.0.1:1"},
-    {"Origin": "http://localhost:{port}"},
-    {"Origin": "http://127.0.0.1:{port}.evil.example"},
-    {"Origin": "http://evil.example/127.0.0.1:{port}"},
-    {"Host": "evil.example", "Origin": "http://evil.example"},
-]
+HOSTS = """
+evil.example evil.example:{port} 127.0.0.1.evil.example localhost.evil.example:{port} 127.0.0.2
+0.0.0.0:{port}
+"""
+SITES = """
+http://evil.example null http://127.0.0.1:1 http://localhost:{port}
+http://127.0.0.1:{port}.evil.example http://evil.example/127.0.0.1:{port}
+"""
+BROKEN = "[", "http://[", "[::1", "http://[x]:y", "]"
+OTHERS = [{"Host": ""}, {"Host": "evil.example", "Origin": "http://evil.example"}]
+OTHERS += [{"Host": host} for host in (*HOSTS.split(), *BROKEN)]
+OTHERS += [{"Origin": site} for site in (*SITES.split(), *BROKEN)]
 OURS = [
     {},
     {"Host": "localhost:{port}"},
@@ -598,18 +570,11 @@ async def test_other_hosts_and_other_sites_are_refused_and_ours_are_not(house):
         for headers in OTHERS:
             sent = {k: v.format(port=door.port) for k, v in headers.items()}
             status, body = await raw(door.port, target, **sent)
-            assert status == 403 and b"<html" not in body, (target, headers)
+            allowed = {403, 400} if {*BROKEN} & {*sent.values()} else {403}
+            assert status in allowed and b"<html" not in body, (target, headers)
     for headers in OURS:
         sent = {k: v.format(port=door.port) for k, v in headers.items()}
         assert (await raw(door.port, "/index.html", **sent))[0] == 200, headers
-
-
-@pytest.mark.parametrize("name", ["Host", "Origin"])
-async def test_a_host_or_a_site_that_cannot_be_read_is_refused_too(house, name):
-    door, _ = house
-    for value in ("[", "http://[", "[::1", "http://[x]:y", "]"):
-        status, _ = await raw(door.port, "/index.html", **{name: value})
-        assert status in (400, 403), value
 
 
 async def test_behind_the_guard_of_a_hub_other_hosts_are_served(serve, run):
@@ -634,58 +599,41 @@ async def test_no_file_but_those_of_the_page_is_read(serve, run, tmp_path):
             status, body = await raw(door.port, start + up * 30 + name)
             assert content[:20] not in body, (start, up)
             assert status in (400, 403, 404) or (start == "/net/abc/" and status == 302)
-        for target in (
-            f"//{name}",
-            f"/%2f{name}",
-            f"/{name}",
-            "/secret.obj",
-            f"/{folder}/",
-            "/net/",
-        ):
+        absolute = f"//{name}", f"/%2f{name}", f"/{name}"
+        for target in (*absolute, "/secret.obj", f"/{folder}/", "/net/"):
             status, body = await raw(door.port, target)
             assert status in (400, 403, 404) and content[:20] not in body, target
 
 
 async def test_only_this_machine_can_connect(house):
+    door, _ = house
     others = {"127.0.0.2", "::1"}
     others |= {a[4][0] for a in socket.getaddrinfo(socket.gethostname(), None)} - {HOST}
-
-    door, _ = house
     for address in others:
         with pytest.raises(OSError):
             await asyncio.open_connection(address, door.port)
-    _, writer = await asyncio.open_connection(HOST, door.port)
-    writer.close()
-    await writer.wait_closed()
+    assert (await raw(door.port, "/index.html"))[0] == 200
 
 
-async def test_a_port_that_is_taken_is_an_error_and_a_free_one_is_used(serve, house):
-    door, _ = house
-    other = serve.Door()
-    with pytest.raises(OSError):
-        await other.open(door.port)
-    with socket.socket() as found:
-        found.bind((HOST, 0))
-        free = found.getsockname()[1]
-    other = serve.Door()
-    assert await other.open(free) == other.port == free
-    assert (await raw(free, "/index.html"))[0] == 200
-    await other.close()
-    with pytest.raises(OSError):
-        await asyncio.open_connection(HOST, free)
-
-
-async def test_without_a_port_the_usual_one_or_a_free_one_is_taken(serve, run, monkeypatch):
+async def test_a_port_that_is_taken_is_an_error_and_a_free_one_is_used(serve, run, monkeypatch):
     with socket.socket() as held:
         held.bind((HOST, 0))
         held.listen()
-        monkeypatch.setattr(serve, "PORT", held.getsockname()[1])
-        for more in (2, 1):  # the next one, or any
+        taken = held.getsockname()[1]
+        door = serve.Door()
+        with pytest.raises(OSError):
+            await door.open(taken)
+        monkeypatch.setattr(serve, "PORT", taken)
+        for more in (2, 1):  # without a port the usual one, the next one, or any
             monkeypatch.setattr(serve, "MORE", more)
-            door = serve.Door()
             port = await door.open()
-            assert port != serve.PORT and (await raw(port, "/index.html"))[0] == 200
+            assert port != taken and (await raw(port, "/index.html"))[0] == 200
             await door.close()
+    assert await door.open(port) == door.port == port  # it is free again
+    assert (await raw(port, "/index.html"))[0] == 200
+    await door.close()
+    with pytest.raises(OSError):
+        await asyncio.open_connection(HOST, port)
 
 
 async def test_every_connection_has_an_app_of_its_own_that_ends_with_it(serve, run):
@@ -784,18 +732,23 @@ def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name):
 
 
 @pytest.fixture
-def door(monkeypatch):
-    """Stands for the server of the process: none is started."""
-    fake = types.SimpleNamespace(port=4321, nets={})
-    monkeypatch.setattr(notebook, "_open_door", lambda: fake)
+def kernel(monkeypatch):
+    """As in a notebook's kernel where no server has been started yet."""
+    monkeypatch.setattr(notebook, "_door", None)
     monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
+
+
+@pytest.fixture
+def door(kernel, monkeypatch):
+    """Stands for the server of the process: none is started."""
+    fake = types.SimpleNamespace(port=4321, nets={})
+    monkeypatch.setattr(notebook, "_open_door", lambda: fake)
     return fake
 
 
 def decoded(data):
-    """The pixels of a PNG."""
     return imread(streams.BytesIO(data), format="png")
 
 
@@ -804,7 +757,7 @@ def test_a_still_net_in_a_notebook_is_a_picture_of_the_same_net():
         still = notebook.show(live=False, **values)
         assert type(still).__name__ == "Image" and type(still).__module__.startswith("IPython")
         sight = notebook.TOP if "kind" not in values else notebook.ROUND
-        assert still.data == made(**values).save(".png", *sight)
+        assert still.data == built(**values).save(".png", *sight)
         assert decoded(still.data).std() > 0.01
 
 
@@ -826,7 +779,8 @@ def test_a_notebook_that_asks_for_what_is_none_gets_a_value_error(door, values, 
 
 
 def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
-    live = notebook.show(live=True, height=345, kind="isothermal", m=4, n=3, theta=70, lock=True)
+    values = {"kind": "isothermal", "m": 4, "n": 3, "theta": 70, "lock": True}
+    live = notebook.show(live=True, height=345, **values)
     bundle = live._repr_mimebundle_()
     page = re.fullmatch(
         r'<object type="text/html" data="([^"]+)" style="([^"]+)">'
@@ -835,28 +789,21 @@ def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
     )
     assert page[1] == live.address == bundle["text/plain"] and "height: 345px" in page[2]
     assert base64.b64decode(page[3]) == base64.b64decode(bundle["image/png"])
-    still = notebook.show(live=False, kind="isothermal", m=4, n=3, theta=70, lock=True)
+    still = notebook.show(live=False, **values)
     assert base64.b64decode(bundle["image/png"]) == still.data
-    assert decoded(still.data).ndim == 3
     address = urlsplit(live.address)
     assert (address.scheme, address.netloc) == ("http", f"{HOST}:{door.port}")
     assert address.path == "/index.html" and door.nets == {}
-    choice = made(kind="isothermal", m=4, n=3, theta=70, lock=True).choice
-    assert choices.parse(address.query) == (choice, [])
-
-
-def families_of(*names):
-    """The polylines of the net PATCH with only these families."""
-    others = {name: [] for name in set(choices.FAMILIES) - set(names)}
-    return mesh.polylines(PATCH[1])._replace(**others)
+    assert choices.parse(address.query) == (built(**values).choice, [])
 
 
 PATCH = surfaces.freeform_patch(4, 3)
 
 
 def test_a_given_net_has_a_page_of_its_own_with_the_families_that_have_curves(door):
-    one = notebook.turn(*PATCH, families_of("v", "d2"), live=True, view=(1.0, 0.2))
-    two = notebook.turn(*PATCH, families_of(), live=True)
+    some = mesh.polylines(PATCH[1])._replace(u=[], d1=[])
+    one = notebook.turn(*PATCH, some, live=True, view=(1.0, 0.2))
+    two = notebook.turn(*PATCH, mesh.Families([], [], [], []), live=True)
     keys = [re.fullmatch(r"/net/(\w+)/index.html", urlsplit(x.address).path)[1] for x in (one, two)]
     assert list(door.nets) == keys and keys[0] != keys[1]
     for key in keys:
@@ -877,7 +824,7 @@ def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, pref
     monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", prefix)
     start = f"{prefix}proxy/{door.port}/"
     live = notebook.show(live=True, m=4, n=4)
-    assert live.address == f"{start}index.html?{choices.link(made(m=4, n=4).choice)}"
+    assert live.address == f"{start}index.html?{choices.link(built(m=4, n=4).choice)}"
     given = notebook.turn(*PATCH, live=True)
     (key,) = door.nets
     assert given.address.startswith(f"{start}net/{key}/index.html?")
@@ -887,18 +834,13 @@ def fetched(address):
     """(status, text) of an address of this machine, by no proxy."""
     there = urlsplit(address)
     connection = http.client.HTTPConnection(there.hostname, there.port, timeout=LIMIT)
-    connection.request("GET", f"{there.path}?{there.query}")
-    answer = connection.getresponse()
-    text = answer.read().decode()
-    connection.close()
-    return answer.status, text
+    with closing(connection):
+        connection.request("GET", f"{there.path}?{there.query}")
+        answer = connection.getresponse()
+        return answer.status, answer.read().decode()
 
 
-def test_a_live_page_answers_from_a_server_of_the_process(serve, monkeypatch):
-    monkeypatch.setattr(notebook, "_door", None)
-    monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
-    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
-    monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
+def test_a_live_page_answers_from_a_server_of_the_process(serve, kernel):
     page = notebook.show(live=True, m=4, n=4)
     given = notebook.turn(*PATCH, live=True)
     assert urlsplit(page.address).port == urlsplit(given.address).port  # one server for all
@@ -910,7 +852,7 @@ def test_a_live_page_answers_from_a_server_of_the_process(serve, monkeypatch):
 
 
 @pytest.mark.parametrize("hub", [True, False])
-def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, monkeypatch, hub):
+def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, kernel, monkeypatch, hub):
     doors = []
 
     class Door:
@@ -921,17 +863,14 @@ def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, monkeypatch
         async def open(self, port):
             self.port = port
 
-    monkeypatch.setattr(notebook, "_door", None)
     monkeypatch.setattr(serve, "Door", Door)
-    monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/")
-    if not hub:
-        monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX")
+    if hub:
+        monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/")
     assert notebook._open_door() is notebook._open_door() is doors[0]
     assert len(doors) == 1 and doors[0].port == 0 and doors[0].guarded is not hub
 
 
-def test_without_the_packages_of_the_page_the_error_says_what_to_install(monkeypatch):
-    monkeypatch.setattr(notebook, "_door", None)
+def test_without_the_packages_of_the_page_the_error_says_what_to_install(kernel, monkeypatch):
     monkeypatch.setitem(sys.modules, "inetlib.explorer.serve", None)
     monkeypatch.delattr("inetlib.explorer.serve", raising=False)
     with pytest.raises(ImportError, match=r"extra `view`.*pip install"):

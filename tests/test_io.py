@@ -166,14 +166,6 @@ def test_glb_is_read_by_vtk_with_lines_and_y_up(tmp_path, web):
     assert np.allclose([x, -z, y], V[5], atol=1e-6)
 
 
-def test_glb_comes_back_as_triangles_in_float32(tmp_path, web):
-    V, Q, _ = web
-    io.write(tmp_path / "n.glb", V, Q)
-    W, F = io.read(tmp_path / "n.glb")
-    T = mesh.triangles(V, Q)[1]
-    assert np.array_equal(W[F], V.astype(np.float32)[T].astype(np.float64))
-
-
 def glb(scene, body, version=2):
     words = json.dumps(scene).encode() if isinstance(scene, dict) else scene
     words += b" " * (-len(words) % 4)
@@ -183,7 +175,7 @@ def glb(scene, body, version=2):
 
 
 def triangle_scene(**accessor):
-    kinds = [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"} | accessor]
+    accessor = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"} | accessor
     return {
         "scenes": [{"nodes": [0]}],
         "nodes": [
@@ -192,11 +184,16 @@ def triangle_scene(**accessor):
         ],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
         "bufferViews": [{"byteOffset": 0}],
-        "accessors": kinds,
+        "accessors": [accessor],
     }
 
 
-def test_glb_nodes_move_their_meshes(tmp_path):
+def test_glb_comes_back_as_triangles_in_float32_and_nodes_move_their_meshes(tmp_path, web):
+    V, Q, _ = web
+    io.write(tmp_path / "n.glb", V, Q)
+    W, F = io.read(tmp_path / "n.glb")
+    T = mesh.triangles(V, Q)[1]
+    assert np.array_equal(W[F], V.astype(np.float32)[T].astype(np.float64))
     body = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="<f4").tobytes()
     V, F = io.read(put(tmp_path, "t.glb", glb(triangle_scene(), body)))
     # a quarter turn about z, twice the size, five along z; then y up becomes z up
@@ -207,15 +204,17 @@ def test_glb_nodes_move_their_meshes(tmp_path):
 
 
 def test_broken_glb_files_are_refused(tmp_path):
+    def bad(data, words):
+        refused(put(tmp_path, "a.glb", data), words)
+
     body = bytes(36)
-    refused(put(tmp_path, "a.glb", glb(b'{"a":', body)), "broken")
-    refused(put(tmp_path, "b.glb", glb(triangle_scene(count=3_000_000), body)), "broken")
-    refused(put(tmp_path, "c.glb", glb(triangle_scene(), body)[:-4]), "broken")
-    refused(put(tmp_path, "d.glb", glb({"extensionsRequired": ["draco"]}, body)), "draco")
-    loop = triangle_scene() | {"nodes": [{"children": [0]}]}
-    refused(put(tmp_path, "e.glb", glb(loop, body)), "broken")
-    refused(put(tmp_path, "f.glb", glb(triangle_scene(sparse={}), body)), "sparse")
-    refused(put(tmp_path, "g.glb", glb(triangle_scene(), b"\xff" * 36)), "usable number")
+    bad(glb(b'{"a":', body), "broken")
+    bad(glb(triangle_scene(count=3_000_000), body), "broken")
+    bad(glb(triangle_scene(), body)[:-4], "broken")
+    bad(glb({"extensionsRequired": ["draco"]}, body), "draco")
+    bad(glb(triangle_scene() | {"nodes": [{"children": [0]}]}, body), "broken")
+    bad(glb(triangle_scene(sparse={}), body), "sparse")
+    bad(glb(triangle_scene(), b"\xff" * 36), "usable number")
 
 
 def test_dxf_passes_ezdxf_audit_and_keeps_all(tmp_path, web):
@@ -281,6 +280,7 @@ def test_obj_counts_from_the_end_and_continues_lines(tmp_path):
     )
     V, F = io.read(put(tmp_path, "t.obj", words.encode("latin-1")))
     assert F.tolist() == [[0, 1, 2], [0, 2, 3]] and V[2].tolist() == [1, 1, 0]
+    refused(put(tmp_path, "r.obj", CORNERS + "f 1 2 3 1\n"), "twice", io.net)
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -349,50 +349,44 @@ def test_files_that_are_none_or_of_another_kind(tmp_path, suffix, web):
         refused(put(tmp_path, f"j{suffix}", data), ".")
 
 
-@pytest.mark.parametrize(
-    "name, content, words",
-    [
-        ("a.obj", "v 0 0 0\nv 1 0\n", "line 2: .* coordinates"),
-        ("b.obj", "v 0 0 0\nv 1 0 x\n", "line 2"),
-        (
-            "c.obj",
-            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n",
-            "line 4: there is no vertex 4, only 1 to 3",
-        ),
-        ("d.obj", "v 0 0 0\nf 0 1 2\n", "line 2: there is no vertex 0, only 1 to 1"),
-        ("e.obj", "v 0 0 0\nf -1 -2 -3\n", "line 2"),
-        ("f.obj", "v 0 0 0\nf 1 1\n", "line 2: a face needs three corners"),
-        ("g.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "vertex 2 .*no usable number"),
-        ("h.obj", "v 0 0 0\nv 1 0 0\n", "no faces"),
-        ("i.obj", "v 0 0 0\nf a b c\n", "line 2: 'a b c' is no face"),
-        ("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", "ends early"),
-        ("b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6: there is no vertex 3"),
-        (
-            "c.off",
-            "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n",
-            "line 6: .* is no face of 4 corners",
-        ),
-        ("d.off", "OFF\nx\n", "line 2: 'x' is no pair of numbers"),
-        ("e.off", "OFF BINARY\n", "text OFF"),
-        ("f.off", "4OFF\n3 1 0\n", "starts with OFF"),
-        ("a.ply", TEXT[".ply"][:-22], "ends early"),
-        ("b.ply", TEXT[".ply"].replace("3 1 4 2", "3 1 4 5"), "names vertex 5"),
-        ("c.ply", TEXT[".ply"].replace("property float y", "property half y"), "line 6"),
-        ("d.ply", TEXT[".ply"].replace("float y", "float w"), "x, y and z"),
-        ("e.ply", TEXT[".ply"].replace("element face 2", "element face 0"), "no faces"),
-        ("f.ply", TEXT[".ply"].replace("7 4 0", "7 4 zero"), "could not convert .*zero"),
-        ("g.ply", TEXT[".ply"].replace("3 1 4 2", "3 1 4 2.5"), "names vertex 2.5"),
-        ("h.ply", TEXT[".ply"].replace("edge 1", "edge 1" + 20 * "0"), "ends early"),
-        ("a.stl", stl(CUBE, np.array([[0, 1, 2]]))[:-1], "133 bytes"),
-        ("b.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "ends early"),
-        ("a.xyz", "0 0 0\n", "the suffix '.xyz': files to read end with .obj"),
-        ("a", "0 0 0\n", "no suffix"),
-    ],
-)
-def test_bad_files_are_one_sentence(tmp_path, name, content, words):
-    refused(put(tmp_path, name, content), words)
-    refused(tmp_path / name, words, io.surface)
-    refused(tmp_path / name, words, io.net)
+CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+OFF, PLY = "OFF\n3 1 0\n0 0 0\n1 0 0\n", TEXT[".ply"]
+BAD = [
+    (".obj", "v 0 0 0\nv 1 0\n", "line 2: .* coordinates"),
+    (".obj", "v 0 0 0\nv 1 0 x\n", "line 2"),
+    (".obj", CORNERS + "f 1 2 4\n", "line 4: there is no vertex 4, only 1 to 3"),
+    (".obj", "v 0 0 0\nf 0 1 2\n", "line 2: there is no vertex 0, only 1 to 1"),
+    (".obj", "v 0 0 0\nf -1 -2 -3\n", "line 2"),
+    (".obj", "v 0 0 0\nf 1 1\n", "line 2: a face needs three corners"),
+    (".obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "vertex 2 .*no usable number"),
+    (".obj", "v 0 0 0\nv 1 0 0\n", "no faces"),
+    (".obj", "v 0 0 0\nf a b c\n", "line 2: 'a b c' is no face"),
+    (".off", OFF, "ends early"),
+    (".off", OFF + "0 1 0\n3 0 1 3\n", "line 6: there is no vertex 3"),
+    (".off", OFF + "0 1 0\n4 0 1 2\n", "line 6: .* is no face of 4 corners"),
+    (".off", "OFF\nx\n", "line 2: 'x' is no pair of numbers"),
+    (".off", "OFF BINARY\n", "text OFF"),
+    (".off", "4OFF\n3 1 0\n", "starts with OFF"),
+    (".ply", PLY[:-22], "ends early"),
+    (".ply", PLY.replace("3 1 4 2", "3 1 4 5"), "names vertex 5"),
+    (".ply", PLY.replace("property float y", "property half y"), "line 6"),
+    (".ply", PLY.replace("float y", "float w"), "x, y and z"),
+    (".ply", PLY.replace("element face 2", "element face 0"), "no faces"),
+    (".ply", PLY.replace("7 4 0", "7 4 zero"), "could not convert .*zero"),
+    (".ply", PLY.replace("3 1 4 2", "3 1 4 2.5"), "names vertex 2.5"),
+    (".ply", PLY.replace("edge 1", "edge 1" + 20 * "0"), "ends early"),
+    (".stl", stl(CUBE, np.array([[0, 1, 2]]))[:-1], "133 bytes"),
+    (".stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\n", "ends early"),
+    (".xyz", "0 0 0\n", "the suffix '.xyz': files to read end with .obj"),
+    ("", "0 0 0\n", "no suffix"),
+]
+
+
+@pytest.mark.parametrize("suffix, content, words", BAD)
+def test_bad_files_are_one_sentence(tmp_path, suffix, content, words):
+    path = put(tmp_path, f"a{suffix}", content)
+    for read in (io.read, io.surface, io.net):
+        refused(path, words, read)
 
 
 def test_bad_vtp_files_are_refused_in_silence(tmp_path, web, capfd):
@@ -406,10 +400,6 @@ def test_bad_vtp_files_are_refused_in_silence(tmp_path, web, capfd):
     huge = data.replace(count, b'NumberOfPoints="300000000000"')
     refused(put(tmp_path, "h.vtp", huge), "broken, says VTK")
     assert capfd.readouterr() == ("", "")
-
-
-def test_a_quad_has_four_corners(tmp_path):
-    refused(put(tmp_path, "r.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3 1\n"), "twice", io.net)
 
 
 def test_nothing_is_overwritten_without_force_or_when_it_fails(tmp_path, web, monkeypatch):

@@ -21,8 +21,6 @@ EVERYTHING = (
     + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
     + [f"App. A.{k}" for k in range(1, 5)]
 )
-
-
 BEYOND = [f"B{k}" for k in range(1, 11)]
 
 
@@ -36,11 +34,8 @@ def rows(part=0):
     for item, _, functions, tests, notebook, status in cells[2:]:
         assert item not in table, item
         assert status == "done", item
-        table[item] = (
-            re.findall(r"`([^`]+)`", functions),
-            re.findall(r"`([^`]+)`", tests),
-            notebook,
-        )
+        quoted = (re.findall(r"`([^`]+)`", cell) for cell in (functions, tests))
+        table[item] = *quoted, notebook
     return table
 
 

@@ -64,13 +64,10 @@ def test_words(ax):
     assert plot.degrees(1.0, np.pi / 4) == r"\theta=57.3\degree,\ \theta_0=45\degree"
 
 
-def test_plane_takes_complex_numbers_pairs_and_triples():
+def test_curves_are_drawn_through_the_points_given_and_seen_whole(ax):
     np.testing.assert_array_equal(plot.plane([[1 + 2j], [3j]]), [[[1, 2]], [[0, 3]]])
     np.testing.assert_array_equal(plot.plane([[1, 2], [3, 4]]), [[1, 2], [3, 4]])
     np.testing.assert_array_equal(plot.plane([[1, 2, 9.0]]), [[1, 2]])
-
-
-def test_curves_are_drawn_through_the_points_given_and_seen_whole(ax):
     lines = [np.array([0, 2 + 1j]), np.array([[5, 1], [6, -3], [7, 0]])]
     drawn = plot.curves(ax, lines, "#d1440c", width=2.5)
     first, second = (path.vertices for path in drawn.get_paths())
@@ -80,12 +77,16 @@ def test_curves_are_drawn_through_the_points_given_and_seen_whole(ax):
     np.testing.assert_allclose(ax.dataLim.get_points(), [[0, -3], [7, 1]])
 
 
-def test_polygons_are_the_faces_with_one_colour_each(ax):
+def test_polygons_are_the_faces_and_black_quads_their_midpoint_parallelograms(ax):
     V, Q = grid(2, 1)
     drawn = plot.polygons(ax, V, Q, fill=["#ff0000", "#0000ff"])
     for path, face in zip(drawn.get_paths(), Q, strict=True):
         np.testing.assert_array_equal(path.vertices[:4], V[face][:, :2])
     np.testing.assert_array_equal(drawn.get_facecolor(), [RED, BLUE])
+    plot.black_quads(ax, V, Q)
+    middle = (V[Q] + V[np.roll(Q, -1, axis=1)])[:, :, :2] / 2
+    black = [path.vertices[:4] for path in ax.collections[1].get_paths()]
+    np.testing.assert_allclose(black, middle)
 
 
 def test_net_draws_each_family_asked_for_in_its_own_colour(ax):
@@ -101,17 +102,6 @@ def test_net_draws_each_family_asked_for_in_its_own_colour(ax):
         np.testing.assert_array_equal(step[:, 0], step[:, 1])
     with pytest.raises(ValueError, match=r"no family \['w'\]"):
         plot.net(ax, V, Q, families=("u", "w"))
-
-
-def test_black_quads_are_the_midpoint_parallelograms(ax):
-    V, Q = grid(3, 2)
-    plot.black_quads(ax, V, Q)
-    (drawn,) = ax.collections
-    middle = (V[Q] + V[np.roll(Q, -1, axis=1)])[:, :, :2] / 2
-    np.testing.assert_allclose([path.vertices[:4] for path in drawn.get_paths()], middle)
-
-
-# --- angle marks --------------------------------------------------------------------------
 
 
 @given(turn, st.floats(0.05, 3.1), st.floats(0.1, 10))
@@ -140,16 +130,13 @@ def test_an_arc_in_space_lies_in_the_plane_of_its_directions(seed):
     np.testing.assert_allclose(chord, 1.4 * np.sin(opening / 16), rtol=1e-9)
 
 
-def test_a_right_angle_is_a_corner():
+def test_a_right_angle_is_a_corner_and_parallel_directions_have_no_arc():
     found = plot.arc([1, 1], [0, 5], [-2, 0], 1)
     np.testing.assert_allclose(found, [[1, 1.7], [0.3, 1.7], [0.3, 1]], atol=1e-15)
     assert plot.arc([0, 0], [1, 0], [1e-6, 1], 1).shape == (40, 2)
-
-
-@pytest.mark.parametrize("b", [[2, 0], [-1, 0], [0, 0]])
-def test_parallel_directions_have_no_arc(b):
-    with pytest.raises(ValueError, match="are parallel: no arc between them"):
-        plot.arc([0, 0], [1, 0], b, 1)
+    for b in ([2, 0], [-1, 0], [0, 0]):
+        with pytest.raises(ValueError, match="are parallel: no arc between them"):
+            plot.arc([0, 0], [1, 0], b, 1)
 
 
 def test_the_label_of_an_angle_stands_outside_the_middle_of_its_arc(ax):
@@ -173,9 +160,6 @@ def test_an_angle_in_space_is_projected(ax):
     np.testing.assert_allclose(ax.texts[0].get_position(), middle, atol=1e-12)
 
 
-# --- in space -----------------------------------------------------------------------------
-
-
 @given(turn, st.floats(-1.5, 1.5))
 def test_a_camera_is_a_rotation_that_looks_from_its_direction(azimuth, elevation):
     xy, near = plot.camera(azimuth, elevation)(np.eye(3))
@@ -187,14 +171,11 @@ def test_a_camera_is_a_rotation_that_looks_from_its_direction(azimuth, elevation
     level = np.cos(elevation)
     wanted = np.cos(azimuth) * level, np.sin(azimuth) * level, np.sin(elevation)
     np.testing.assert_allclose(near, wanted, atol=1e-15)
-
-
-def test_from_the_x_axis_y_points_to_the_right():
-    xy, near = plot.camera(0, 0)([2, 3, 5])
+    xy, near = plot.camera(0, 0)([2, 3, 5])  # from the x axis y points to the right
     np.testing.assert_allclose([*xy, near], [3, 5, 2], atol=1e-15)
 
 
-def test_faces_are_darker_the_more_they_turn_from_the_light():
+def test_faces_are_darker_the_more_they_turn_from_the_light_on_both_sides_alike():
     found = plot.shade(SQUARE, FACE, "#ff8000", light=(0, 0, 2), depth=0.35)
     np.testing.assert_allclose(found, [[1, 128 / 255, 0]])
     found = plot.shade(SQUARE, FACE, "#ff8000", light=(3, 0, 0), depth=0.35)
@@ -202,9 +183,6 @@ def test_faces_are_darker_the_more_they_turn_from_the_light():
     triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]])  # its normal is the y axis
     found = plot.shade(triangle, np.array([[0, 1, 2]]), "#ffffff", light=(0, 1, 1), depth=0.5)
     np.testing.assert_allclose(found, 1 - 0.5 * (1 - 0.5**0.5))
-
-
-def test_both_sides_of_a_face_are_shaded_alike_whatever_its_size():
     one = plot.shade(SQUARE, FACE)
     np.testing.assert_allclose(plot.shade(100 * SQUARE, FACE[:, ::-1]), one)
     collapsed = plot.shade(np.zeros((4, 3)), FACE)
@@ -259,11 +237,8 @@ def test_a_line_on_a_face_is_painted_over_it_and_under_the_next_one(ax):
     np.testing.assert_allclose(drawn.get_paths()[1].vertices, xy[:2])
     np.testing.assert_allclose(drawn.get_paths()[2].vertices, xy[1:])
     assert drawn.get_facecolors()[1][3] == 0
-
-
-def test_every_part_of_a_slanted_face_is_painted_before_the_lines_on_it(ax):
     view, border = plot.camera(0.3, 0.4), [(SQUARE[[0, 1, 2, 3, 0]], "#00ff00", 1.0)]
-    drawn = plot.scene(ax, view, SQUARE, FACE, fill=[RED], lines=border)
+    drawn = plot.scene(ax, view, SQUARE, FACE, fill=[RED], lines=border)  # all of a slanted face
     np.testing.assert_array_equal(drawn.get_edgecolors(), [RED] + [GREEN] * 4)
 
 

@@ -63,34 +63,26 @@ def test_a_drawing_has_the_name_of_its_module_and_the_arguments_of_the_call():
     assert drawing.claims == {"half": 0.333333333} and drawing.data == {"x": np.radians(60.5)}
 
 
-def test_saving_twice_gives_the_same_bytes_without_dates(draw, tmp_path):
+def test_saving_twice_gives_the_same_bytes_without_dates_and_a_manifest(draw, tmp_path):
     drawing = draw()
     for _ in range(2):
-        publish.save(drawing, tmp_path)
+        entry = publish.save(drawing, tmp_path)
     first = contents(tmp_path)
     assert set(first) == FILES
-    publish.save(draw(), tmp_path)
-    assert contents(tmp_path) == first
+    assert publish.save(draw(), tmp_path) == entry and contents(tmp_path) == first
     assert first["fig00.png"].startswith(b"\x89PNG") and b"<svg" in first["fig00.svg"]
     assert b"<dc:date>" not in first["fig00.svg"] and b"Matplotlib" not in first["fig00.png"]
-
-
-def test_the_manifest_holds_what_stands_behind_the_figure(draw, tmp_path):
-    drawing = draw()
-    entry = publish.save(drawing, tmp_path)
     assert entry == {
         "function": "inetlib.drawings.fig00.draw",
         "parameters": {"theta": round(T, 9)},
-        "sha256": hashlib.sha256(contents(tmp_path)["data/fig00.npz"]).hexdigest(),
+        "sha256": hashlib.sha256(first["data/fig00.npz"]).hexdigest(),
         "max_deviation_theta_deg": 0.0,
         "max_deviation_theta0_deg": 0.0,
         "claims": {"faces": 9},
     }
-    text = (tmp_path / "manifest.json").read_bytes()
-    assert json.loads(text) == {"fig00": entry}
-    assert text.endswith(b"}\n")
-    assert b"\r" not in text
-    assert publish.read_manifest(tmp_path) == {"fig00": entry}
+    text = first["manifest.json"]
+    assert json.loads(text) == publish.read_manifest(tmp_path) == {"fig00": entry}
+    assert text.endswith(b"}\n") and b"\r" not in text
 
 
 def test_a_wrong_claim_about_the_angles_shows_in_the_manifest(draw, tmp_path):
@@ -135,26 +127,24 @@ def test_broken_or_missing_files_are_made_again(draw, tmp_path):
             assert contents(tmp_path) == whole, name
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"theta": T + 1e-3, "parameters": {"theta": 1.0472}}, ["data V", "svg", "png"]),
-        ({"parameters": {"theta": 2.0}}, ["manifest"]),
-        ({"claims": {"faces": 8}}, ["manifest"]),
-        ({"nets": []}, ["manifest"]),
-        ({"title": "another net"}, ["svg", "png"]),
-        ({"data": {"V": np.zeros(3)}}, ["data Q", "data V"]),
-    ],
-)
+ANOTHER = [
+    ({"theta": T + 1e-3, "parameters": {"theta": 1.0472}}, ["data V", "svg", "png"]),
+    ({"parameters": {"theta": 2.0}}, ["manifest"]),
+    ({"claims": {"faces": 8}}, ["manifest"]),
+    ({"nets": []}, ["manifest"]),
+    ({"title": "another net"}, ["svg", "png"]),
+    ({"data": {"V": np.zeros(3)}}, ["data Q", "data V"]),
+]
+
+
+@pytest.mark.parametrize(("change", "words"), ANOTHER)
 def test_what_changed_is_named_and_rewritten_alone(draw, tmp_path, change, words):
     folder, other = tmp_path / "one", tmp_path / "two"
     for place in (folder, other):
         publish.save(draw("fig01"), place)
         publish.save(draw("fig02", parameters={"theta": 1.0472}), place)
     before = contents(folder)
-    data = change.get("data")
-    drawing = draw("fig02", **{"parameters": {"theta": 1.0472}} | change)
-    entry = publish.save(drawing, folder)
+    entry = publish.save(draw("fig02", **{"parameters": {"theta": 1.0472}} | change), folder)
     assert publish.differences("fig02", folder, other) == words
     after = contents(folder)
     changed = {name for name in after if after[name] != before[name]}
@@ -162,26 +152,23 @@ def test_what_changed_is_named_and_rewritten_alone(draw, tmp_path, change, words
     assert {"svg": "fig02.svg", "png": "fig02.png"}.get(words[-1], "manifest.json") in changed
     assert publish.read_manifest(folder)["fig02"] == entry
     assert publish.differences("fig01", folder, other) == []
-    assert data is None or "data/fig02.npz" in changed
+    assert "data" not in change or "data/fig02.npz" in changed
 
 
 def test_data_that_are_not_those_of_the_manifest_are_noticed(draw, tmp_path):
-    folder, other = tmp_path / "one", tmp_path / "two"
-    for place in (folder, other):
-        publish.save(draw(), place)
-    data = publish.read_data(other / "data" / "fig00.npz")
-    np.savez_compressed(other / "data" / "fig00.npz", **data)
-    assert publish.differences("fig00", folder, other) == ["manifest"]
-    assert publish.differences("fig09", folder, other) == ["missing"]
+    for place in ("one", "two"):
+        publish.save(draw(), tmp_path / place)
+    path = tmp_path / "two" / "data" / "fig00.npz"
+    np.savez_compressed(path, **publish.read_data(path))
+    assert publish.differences("fig00", tmp_path / "one", tmp_path / "two") == ["manifest"]
+    assert publish.differences("fig09", tmp_path / "one", tmp_path / "two") == ["missing"]
 
 
 def test_a_text_is_kept_unless_it_says_something_else(tmp_path):
     path = tmp_path / "table.md"
-    publish.save_text("| 7 | 0.25 |\n", path)
-    publish.save_text("| 7 | 0.26 |\n", path)
-    assert path.read_bytes() == b"| 7 | 0.25 |\n"
-    publish.save_text("| 8 | 0.26 |\n", path)
-    assert path.read_bytes() == b"| 8 | 0.26 |\n"
+    for text, kept in (("7 | 0.25", "7 | 0.25"), ("7 | 0.26", "7 | 0.25"), ("8 | 1", "8 | 1")):
+        publish.save_text(f"{text}\n", path)
+        assert path.read_bytes() == f"{kept}\n".encode()
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -214,12 +201,9 @@ def test_a_folder_with_spaces_is_made_when_only_its_last_part_is_missing(draw, t
 
 
 @pytest.mark.parametrize("kind", ["svg", "png"])
-def test_a_failing_savefig_leaves_the_old_files_and_no_temporary_ones(
-    draw, tmp_path, monkeypatch, kind
-):
+def test_a_failing_savefig_leaves_only_the_old_files(draw, tmp_path, monkeypatch, kind):
     publish.save(draw(), tmp_path)
-    before = contents(tmp_path)
-    drawing = draw(theta=np.radians(75))
+    before, drawing = contents(tmp_path), draw(theta=np.radians(75))
     real = drawing.figure.savefig
 
     def failing(path, format, **options):
@@ -243,14 +227,11 @@ def test_a_corrupt_manifest_is_named_and_nothing_is_overwritten(draw, tmp_path, 
     assert contents(tmp_path) == before
 
 
+NO_ANGLE = (*conformal.quads(conformal.sheared_grid(T, T0, 1, 1)), np.nan, T0)
 UNWRITABLE = {
     "not a number": (dict(claims={"x": float("nan")}), ValueError, "not JSON compliant"),
     "an array": (dict(parameters={"x": np.zeros(2)}), TypeError, "not JSON serializable"),
-    "an angle that is no number": (
-        dict(nets=[(*conformal.quads(conformal.sheared_grid(T, T0, 1, 1)), np.nan, T0)]),
-        ValueError,
-        "not JSON compliant",
-    ),
+    "an angle that is no number": (dict(nets=[NO_ANGLE]), ValueError, "not JSON compliant"),
 }
 
 
