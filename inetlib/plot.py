@@ -56,8 +56,8 @@ def plane(points) -> np.ndarray:
 def curves(ax, lines, colour, width=1.1, style="-", zorder=2, alpha=None):
     """Polylines (complex or (k, 2) arrays) as one collection; returns it."""
     look = {"colors": colour, "linewidths": width, "linestyles": style, "alpha": alpha}
-    lines = [plane(line) for line in lines]
-    return _added(ax, LineCollection(lines, zorder=zorder, capstyle="round", **look))
+    lines = LineCollection([*map(plane, lines)], zorder=zorder, capstyle="round", **look)
+    return _added(ax, lines)
 
 
 def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, zorder=1, alpha=None):
@@ -99,8 +99,7 @@ def net(ax, V: np.ndarray, Q: np.ndarray, families=("u", "v"), width=1.1):
 
 def black_quads(ax, V: np.ndarray, Q: np.ndarray, fill=FILL, edge=INK, width=0.4):
     """The inscribed parallelograms of a planar net."""
-    board = mesh.checkerboard(V, Q)
-    polygons(ax, board.V, board.black, fill, edge, width)
+    polygons(ax, *mesh.checkerboard(V, Q)[:2], fill, edge, width)
 
 
 def arc(apex, a, b, radius: float, samples: int = 40) -> np.ndarray:
@@ -146,8 +145,7 @@ def camera(azimuth: float, elevation: float):
     azimuth, elevation: radians, the direction from which the scene is seen; z points up.
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
-    right, up = np.array([-sa, ca, 0]), np.array([-se * ca, -se * sa, ce])
-    towards = np.array([ce * ca, ce * sa, se])
+    right, up, towards = [-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]
 
     def project(points):
         points = np.asarray(points, dtype=float)
@@ -226,6 +224,5 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     pieces = [pieces[k] for k in order(np.concatenate(keys))]
     paths, inside, edges, widths = map(list, zip(*pieces, strict=True))
     look = {"facecolors": inside, "edgecolors": edges, "linewidths": widths}
-    collection = PathCollection([Path(p) for p in paths], capstyle="round", **look)
     ax.update_datalim(np.concatenate(paths))
-    return _added(ax, collection)
+    return _added(ax, PathCollection([*map(Path, paths)], capstyle="round", **look))
