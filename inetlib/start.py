@@ -31,8 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
 def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    sentence() is said on stderr; fresh: on a new line, after a progress bar.  A signal that
-    was ignored stays so, as for programs in the background of a script.
+    sentence() is said on stderr; fresh: on a new line.  A signal that was ignored stays so.
     """
 
     def stop(number, frame):

@@ -215,11 +215,8 @@ def write(
         curves = mesh.polylines(Q)
     if not isinstance(curves, mesh.Families | None):
         raise ValueError(f'curves are a {type(curves).__name__}: mesh.Families, "all" or None')
-    families = {
-        name: [_row(curve, len(V), 2, "curve") for curve in family]
-        for name, family in (curves._asdict() if curves else {}).items()
-        if family
-    }
+    given = curves._asdict() if curves else {}
+    families = {k: [_row(c, len(V), 2, "curve") for c in x] for k, x in given.items() if x}
     polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
     known = check_output(path, bool(families), force)
     with files.replacing(path) as new:
