@@ -234,8 +234,7 @@ def _web_options(command):
     add("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
     text = """exact: straight-edged quads with these angles; smooth: points of the smooth web;
         paper: the published algorithm (%(default)s)"""
-    ways = "exact", "smooth", "paper"
-    add("--method", choices=ways, default="exact", help=text)
+    add("--method", choices=("exact", "smooth", "paper"), default="exact", help=text)
     _write_options(command, keep=False)
 
 
@@ -261,13 +260,13 @@ def _profile(name):
         raise ValueError(f"--profile {name}: neither {known} nor a file that is there")
     rows = []
     lines = Path(name).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    for k, line in enumerate(lines, 1):
+    for k, line in enumerate(map(str.strip, lines), 1):
         try:
             radius, height = map(float, re.split(r"[,;\s]+", line.strip(" \t,;")))
             rows.append((radius, height))
         except ValueError:
-            if line.strip() and (rows or re.search(r"\d", line)):
-                what = f"a radius and a height are wanted, not {line.strip()[:40]!r}"
+            if line and (rows or re.search(r"\d", line)):
+                what = f"a radius and a height are wanted, not {line[:40]!r}"
                 raise ValueError(f"{name}, line {k}: {what}") from None
     with io.named(name):
         if len(rows) < 2:

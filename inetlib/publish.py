@@ -1,7 +1,4 @@
-"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed.
-
-On another machine the last digits of all these differ: what shows the same is kept.
-"""
+"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed."""
 
 import hashlib
 import io
@@ -43,8 +40,8 @@ def save(drawing: Drawing, folder) -> dict:
     """Write the figure into a folder, unless what is there shows the same; its manifest entry.
 
     folder/NAME.svg, NAME.png, data/NAME.npz and the entry in manifest.json go together: where one
-    of them differs by more than the tolerances of `same`, all are replaced, else all are kept.
-    When anything fails the old files stay.  `folder` is made when only its last part is missing.
+    differs by more than the tolerances of `same`, all are replaced.  When anything fails the old
+    files stay.  `folder` is made when only its last part is missing.
     """
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
@@ -71,16 +68,10 @@ def _draw(drawing, folder, manifest):
     drawing.figure.savefig(png, format="png", metadata={"Software": None})
     np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})
     off = np.degrees(deviations(drawing.nets)).tolist() if drawing.nets else (None, None)
-    entry = {
-        "function": drawing.function,
-        "parameters": drawing.parameters,
-        "sha256": _hash(data),
-        "max_deviation_theta_deg": off[0],
-        "max_deviation_theta0_deg": off[1],
-        "claims": drawing.claims,
-    }
-    manifest = dict(sorted((manifest | {drawing.name: rounded(entry)}).items()))
-    text = json.dumps(manifest, indent=2, allow_nan=False) + "\n"
+    entry = {"function": drawing.function, "parameters": drawing.parameters, "sha256": _hash(data)}
+    entry |= {"max_deviation_theta_deg": off[0], "max_deviation_theta0_deg": off[1]}
+    manifest[drawing.name] = rounded(entry | {"claims": drawing.claims})
+    text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False) + "\n"
     (folder / "manifest.json").write_text(text, encoding="utf-8", newline="\n")
 
 

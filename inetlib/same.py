@@ -68,7 +68,7 @@ def data(one: dict, two: dict) -> list:
 
 
 def plain_svg(svg: str) -> str:
-    """The text of an SVG by matplotlib with names in order of appearance and two decimals.
+    """The text of an SVG by matplotlib, with two decimals, and names in order of appearance.
 
     matplotlib names clips and markers by a hash of numbers with all their digits.
     """

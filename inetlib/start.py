@@ -1,7 +1,6 @@
 """The way in of `inet` as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks:
-a handler tidies up, speaks, and ends the process.  Only programs install it, before all else.
+Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks.
 """
 
 import os

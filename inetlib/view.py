@@ -47,7 +47,7 @@ def headless() -> bool:
 def available() -> tuple[bool, str]:
     """(True, a sentence) when pyvista can draw off screen here, else (False, what is missing).
 
-    A picture is tried once, in a process of its own: without OpenGL, VTK may end the process.
+    It is tried once, in a process of its own: without OpenGL, VTK may end the process.
     """
     try:
         pyvista_module()
@@ -61,22 +61,14 @@ def available() -> tuple[bool, str]:
     return True, "pyvista draws off screen here"
 
 
-def scene(
-    V: np.ndarray,
-    Q: np.ndarray,
-    families: mesh.Families | None = None,
-    colours: dict | None = None,
-    width: float = 0.0035,
-    view: tuple = (-1.0, 0.5),
-    live: bool = False,
-) -> Any:
+def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=False) -> Any:
     """A `pyvista.Plotter` with the shaded faces of a net and its curves as tubes.
 
-    V: (n, 3), Q: (f, 4).  families: vertex indices (k,) or points (k, 3), default
-    `mesh.polylines(Q)`.  colours: {"face": ..., "u": ...}, where they differ from COLOURS.
-    width: of a tube, as a part of the bounding box's diagonal.  view: azimuth and elevation
-    (radians) of the viewer.  live: for a window.  ImportError without pyvista, RuntimeError
-    without OpenGL.
+    V: (n, 3), Q: (f, 4).  families: `mesh.Families` of vertex indices (k,) or points (k, 3),
+    default `mesh.polylines(Q)`.  colours: {"face": ..., "u": ...}, where they differ from
+    COLOURS.  width: of a tube, as a part of the bounding box's diagonal.  view: azimuth and
+    elevation (radians) of the viewer.  live: whether for a window.  ImportError without
+    pyvista, RuntimeError without OpenGL.
     """
     pyvista = pyvista_module()
     V, Q = mesh.check_arrays(V, Q)

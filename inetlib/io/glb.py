@@ -1,4 +1,4 @@
-"""GLB (binary glTF 2.0): scenes for the web, for phones and for slides; float32 by the format.
+"""GLB (binary glTF 2.0), float32 by the format.
 
 Read here and not by VTK, whose reader ends the process on some broken files.
 """
@@ -85,10 +85,7 @@ def _array(scene, data, number, width):
 
 
 def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
-
-    Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).
-    """
+    """Write a GLB scene: a mesh `panels` of triangles, one of lines a family; y is upwards."""
     from ..plot import COLOURS, PALE
     from ..repair import triangulate
 
