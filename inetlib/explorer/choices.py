@@ -1,7 +1,4 @@
-"""What the explorer can be asked for: one record of checked values, and the same as a link.
-
-Angles are degrees here, as on the command line and on the page.
-"""
+"""What the explorer can be asked for: checked values, angles in degrees; the same as a link."""
 
 from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple

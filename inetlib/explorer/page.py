@@ -203,8 +203,7 @@ def _bar(given):
 
 
 def _button(icon, words, name="", **does):
-    classes = f"text-none {name}"
-    with v3.VBtn(size="small", variant="text", classes=classes, title=words, **does):
+    with v3.VBtn(size="small", variant="text", classes=f"text-none {name}", title=words, **does):
         v3.VIcon(icon, start=True)
         html.Span(words, classes="d-none d-md-inline")
 

@@ -87,8 +87,7 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     """A `Report` on the net V, Q as the page shows it, angles in degrees: a dict of texts."""
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)
-    _, _, one, two = measure.vectors(V, Q)
-    medial = np.linalg.norm([one, two], axis=2)
+    medial = np.linalg.norm(measure.vectors(V, Q)[2:], axis=2)
     return {
         "quads": f"{about.quads:,}".replace(",", "\u2009"),
         "lam": f"{lam:.5g}",

@@ -1,7 +1,6 @@
 """The way in: one local address, and for every browser tab an `app.App` of its own.
 
-Only this machine can connect, and only pages from this address: requests that name another
-host, or come from another site, are refused.  Nothing is read but the program's own pages.
+Only this machine can connect, and only pages from this address.
 """
 
 import asyncio

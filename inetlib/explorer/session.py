@@ -104,8 +104,7 @@ class Session:
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        words = f"step {self.steps}"
-        return self._settle(run, run, lambda _: (V, Q, words))
+        return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}"))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
@@ -114,8 +113,7 @@ class Session:
 
     def colours(self):
         """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
-        asked = np.radians([self.shown.theta, self.shown.theta0])
-        return look.shades(np.degrees(measure.deviations(self.V, self.Q, *asked)).max(axis=0))
+        return look.shades(np.abs(self.deviations()).max(axis=0))
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
