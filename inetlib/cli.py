@@ -33,39 +33,28 @@ examples:
 
 exit codes: 0 done; 1 no net with these angles was found; 2 wrong input, nothing was
 written; 130 stopped by Ctrl-C.  `inet COMMAND --help` shows the options of a command."""
-TEXTS = {  # what a command does, and examples
-    "measure": [
-        "How well a quad mesh keeps two angles, and its quality.",
-        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
-        "inet measure web.obj --theta 60 --theta0 45",
-        "inet measure web.obj --json",
-    ],
-    "cover": [
-        "Cover a surface from a file with a net of two given angles.",
-        "inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj",
-        "inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json",
-    ],
-    "web": [
-        "An exact net on a surface of revolution.",
-        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
-        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 10 -o vase.ply",
-    ],
-    "optimize": [
-        "Change a quad mesh into a net with the angles you want.",
-        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj",
-        "inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj",
-    ],
-    "explore": [
-        "Turn the angles of a net in the browser, on this machine only.",
-        "inet explore",
-        "inet explore roof.obj --port 8000 --open",
-    ],
-    "figures": [
-        "Rerun the notebooks and redraw their figures (in a clone).",
-        "inet figures fig05",
-        "inet figures 3_1 4",
-    ],
+HELP = {  # what a command does, and examples
+    "measure": """How well a quad mesh keeps two angles, and its quality.
+        inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
+        inet measure web.obj --theta 60 --theta0 45
+        inet measure web.obj --json""",
+    "cover": """Cover a surface from a file with a net of two given angles.
+        inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj
+        inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json""",
+    "web": """An exact net on a surface of revolution.
+        inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 10 -o vase.ply""",
+    "optimize": """Change a quad mesh into a net with the angles you want.
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
+        inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj""",
+    "explore": """Turn the angles of a net in the browser, on this machine only.
+        inet explore
+        inet explore roof.obj --port 8000 --open""",
+    "figures": """Rerun the notebooks and redraw their figures (in a clone).
+        inet figures fig05
+        inet figures 3_1 4""",
 }
+TEXTS = {name: [*map(str.strip, text.splitlines())] for name, text in HELP.items()}
 
 
 class Parser(argparse.ArgumentParser):
@@ -203,12 +192,11 @@ def _cover_options(command):
 
 
 def _cover(given):
-    from . import io
-    from .examples import SURFACES
+    from . import examples, io
 
     io.check_output(given.output, given.curves, given.force)
-    if given.surface in SURFACES:
-        (V, F), repaired = SURFACES[given.surface](), []
+    if given.surface in examples.SURFACES:
+        (V, F), repaired = examples.SURFACES[given.surface](), []
     else:
         V, F, repaired = io.surface(given.surface)
     from . import design
@@ -217,7 +205,7 @@ def _cover(given):
     ways = {"tolerance": given.tolerance, "progress": _progress(given)}
     found = design.cover(V, F, *asked, **ways)
     about = found.report
-    notes = _repairs(given.surface, [*repaired, *about.repairs])
+    notes = [f"{given.surface}: {x}" for x in dict.fromkeys([*repaired, *about.repairs])]
     more = {"converged": about.converged, "message": about.message}
     return _finish(given, found.V, found.Q, (), about, notes, more)
 
@@ -298,7 +286,7 @@ def _optimize(given):
     ways = {name: getattr(given, name) for name in ("on_surface", "fixed", "via", "tolerance")}
     if given.reference is not None:
         W, F, repaired = io.surface(given.reference)
-        notes += _repairs(given.reference, repaired)
+        notes += [f"{given.reference}: {sentence}" for sentence in repaired]
         from . import reference
 
         ways["reference"] = reference.mesh(W, F)
@@ -401,10 +389,6 @@ def _turned(V, Q, theta, theta0):
         return []
     words = " and ".join(f"{math.degrees(x):.6g}" for x in turned)
     return [f"u and v may be exchanged in the file: with the other labels its angles are {words}"]
-
-
-def _repairs(path, sentences):
-    return [f"{path}: {sentence}" for sentence in dict.fromkeys(sentences)]
 
 
 def _report(given, V, Q, polygons=()):

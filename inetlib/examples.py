@@ -28,10 +28,7 @@ def saddle_with_hole(n: int = 20) -> tuple[np.ndarray, np.ndarray]:
 
 
 def hanging_shell(n: int = 30) -> tuple[np.ndarray, np.ndarray]:
-    """A square cloth of n by n squares that hangs from its four corners, turned upside down.
-
-    The edges are springs of no length, stronger at the border: equilibrium is one linear system.
-    """
+    """A cloth of n by n squares, a net of springs, that hangs from its corners, upside down."""
     from .solver import sparse  # slow to load
 
     n = check_whole("n", n, 2)

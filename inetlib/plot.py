@@ -27,10 +27,7 @@ def use_style():
 
 
 def canvas(panels, width: float, height: float, ratios=None):
-    """A figure with named panels: (figure, {name: axes}), axes off and of equal aspect.
-
-    panels: rows of names, see `pyplot.subplot_mosaic`; width, height: inches; ratios: of columns.
-    """
+    """(figure, {name: axes}): panels as of `subplot_mosaic`, inches, ratios of the columns."""
     use_style()
     figure = plt.figure(figsize=(width, height))
     axes = figure.subplot_mosaic(panels, width_ratios=ratios)
@@ -165,10 +162,7 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35) -> np.ndarr
 
 
 def order(keys) -> np.ndarray:
-    """The places of the keys (k,) from the smallest to the largest; ties keep their order.
-
-    Ties: within `ties.TIE` of the range of all, or within the rounding of the largest.
-    """
+    """The places of the keys (k,) from the smallest to the largest; ties keep their order."""
     keys = np.asarray(keys, dtype=float)
     close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
     return np.argsort(ties.ranks(keys, close), kind="stable")
@@ -183,8 +177,7 @@ def families(V, Q, widths):
 def cells(V, Q, white=False):
     """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
 
-    light: the corners left of every face, or with `white` the white quads of the checkerboard and
-    the corners that these leave along the rim.
+    light: the corners left, or with `white` the white quads, and the corners left at the rim.
     """
     board = mesh.checkerboard(V, Q)
     black = board.black + len(V)

@@ -96,8 +96,8 @@ def _hash(path):
 def differences(name: str, one, two) -> list:
     """What differs between the figure `name` in two folders by more than the tolerances of `same`.
 
-    Words: "missing", "unreadable", or some of "manifest", "data NAME" for each array, "svg" and
-    "png"; "manifest" also where that of `two` does not have the hash of its data.
+    Words: "missing", "unreadable", or some of "manifest" (in `two` it has the hash of the data,
+    too), "data NAME" for each array, "svg" and "png".
     """
     svg, png, data = ([Path(x) / file for x in (one, two)] for file in _names(name))
     entries = [read_manifest(folder).get(name) for folder in (one, two)]
@@ -108,10 +108,8 @@ def differences(name: str, one, two) -> list:
         good = same.claims(*stated) and entries[1]["sha256"] == _hash(data[1])
         found = [] if good else ["manifest"]
         found += [f"data {array}" for array in same.data(*map(read_data, data))]
-        if not same.svg(*(path.read_text(encoding="utf-8") for path in svg)):
-            found.append("svg")
-        if not same.picture(*(path.read_bytes() for path in png)):
-            found.append("png")
+        found += ["svg"] * (not same.svg(*(path.read_text(encoding="utf-8") for path in svg)))
+        found += ["png"] * (not same.picture(*(path.read_bytes() for path in png)))
     except (OSError, EOFError, ValueError, zipfile.BadZipFile):  # a broken file, half a merge
         return ["unreadable"]
     return found

@@ -41,10 +41,7 @@ def _near(a, b):
 
 
 def claims(one, two) -> bool:
-    """Whether two claims of a figure, numbers, words, lists or dicts of them, are the same.
-
-    Decimals are so within one unit of the last digit that either of them states.
-    """
+    """Whether claims (numbers, words, lists, dicts) are the same, decimals to their last digit."""
     if isinstance(one, dict) and isinstance(two, dict):
         return one.keys() == two.keys() and all(claims(one[k], two[k]) for k in one)
     if isinstance(one, (list, tuple)) and isinstance(two, (list, tuple)):
@@ -68,10 +65,7 @@ def data(one: dict, two: dict) -> list:
 
 
 def plain_svg(svg: str) -> str:
-    """The text of an SVG by matplotlib, with two decimals, and names in order of appearance.
-
-    matplotlib names clips and markers by a hash of numbers with all their digits.
-    """
+    """An SVG by matplotlib with two decimals and with numbers for the hashes in its names."""
     names = {}
     for match in HASHED.finditer(svg):
         names.setdefault(match[0][len('id="') : -1], f"{match[1]}-{len(names) + 1}")
@@ -101,10 +95,7 @@ def _within(pair, most):
 
 
 def picture(one: bytes, two: bytes, levels: float = LEVELS, mean: float = MEAN) -> bool:
-    """Whether two PNG files look the same.
-
-    levels: by which one pixel may differ, of 255; mean: of all pixels, as a part of 1.
-    """
+    """Whether two PNG files look the same; levels: of 255, for one pixel; mean: of 1, for all."""
     if one == two:
         return True
     a, b = (np.asarray(PIL.Image.open(io.BytesIO(x)).convert("RGBA"), float) for x in (one, two))

@@ -58,10 +58,7 @@ class Session:
             self._settle(None, None, nets.make)
 
     def _settle(self, run, then, make, *known):
-        """Show the net that is made, or say why there is none, unless a newer run has begun.
-
-        then: the run that is under way afterwards.
-        """
+        """Show the net made, or say why there is none; then: the run that is under way after it."""
         choice, problem = run.choice if run else self.choice, ""
         try:
             V, Q, message = make(choice, *known)

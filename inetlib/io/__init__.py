@@ -86,9 +86,8 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
 
 
 def surface(path: str | Path, merge: bool = True) -> Surface:
-    """The file's mesh as a reference surface of triangles, see `repair.manifold`.
+    """The file's mesh as a surface of triangles: `repair.manifold`, which `merge` is for.
 
-    With merge=False duplicate vertices stay: what was cut open on purpose stays open.
     ValueError as in `read`, and for what is no surface.
     """
     V, F = read(path)
@@ -197,17 +196,17 @@ def write(
     polygons: Sequence = (),
     force: bool = False,
 ) -> None:
-    """Write a net; the suffix of the path names the format.
+    """Write a net, all of it or nothing; the suffix of the path names the format.
 
-    V         (n, 3) vertices; float32 in GLB files by the format, else every bit is kept
-    Q         (f, 4) quads, or triangles (f, 3); GLB cuts quads along the shorter diagonal
+    V         (n, 3) vertices
+    Q         (f, 4) quads, or triangles (f, 3)
     curves    `mesh.Families` of vertex index arrays, "all" for mesh.polylines(Q), or None
     polygons  further faces: index arrays (k,)
     force     whether to replace an existing file
 
-    The file is complete or not there.  ValueError for unknown suffixes, directories, a missing
-    folder, curves in a format without them, and indices out of range; FileExistsError without
-    `force`; PermissionError; ImportError when the package for the format is missing.
+    ValueError for unknown suffixes, directories, a missing folder, curves in a format without
+    them, and indices out of range; FileExistsError without `force`; PermissionError;
+    ImportError when the package for the format is missing.
     """
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)

@@ -69,11 +69,8 @@ def _ply_header(lines):
 
 
 def _ply_runs(body, at, count, properties):
-    """The rows of an element as structured arrays, one a run of equally long lists, and the end.
-
-    Runs are looked for in 1, 2, 4, ... rows: all lists are as long as in the first of them.
-    """
-    runs, most = [], 1
+    """The rows of an element as structured arrays, one a run of equally long lists, and the end."""
+    runs, most = [], 1  # rows to look at: 1, 2, 4, ..., while lists are as long as in the first
     while count and properties:
         fields, counts = [], []
         for name, kind, size in properties:

@@ -60,7 +60,7 @@ def _colours(curves):
     from ..plot import COLOURS, GREY
 
     text = {"panels": GREY} | {name: COLOURS[name] for name in curves}
-    return {k: tuple(int(c[i : i + 2], 16) for i in (1, 3, 5)) for k, c in text.items()}
+    return {name: tuple(bytes.fromhex(colour[1:])) for name, colour in text.items()}
 
 
 def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:

@@ -5,6 +5,7 @@ Read here and not by VTK, whose reader ends the process on some broken files.
 
 import json
 import struct
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -107,8 +108,7 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
         "materials": [_material(name, (COLOURS | {"panels": PALE})[name]) for name in cells],
         "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],
         "bufferViews": [
-            {"buffer": 0, "byteOffset": start, "byteLength": block.nbytes}
-            for start, block in zip(starts[:-1], blocks, strict=True)
+            {"buffer": 0, "byteOffset": a, "byteLength": b - a} for a, b in pairwise(starts)
         ],
         "buffers": [{"byteLength": starts[-1]}],
     }
@@ -125,7 +125,7 @@ def _mesh(k, name):
 
 
 def _material(name, colour):
-    srgb = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    srgb = np.array(list(bytes.fromhex(colour[1:]))) / 255
     linear = [*(srgb**2.2).round(4).tolist(), 1.0]
     look = {"baseColorFactor": linear, "metallicFactor": 0.0, "roughnessFactor": 1.0}
     return {"name": name, "doubleSided": True, "pbrMetallicRoughness": look}

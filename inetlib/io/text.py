@@ -50,10 +50,7 @@ def _check_face(face, given, count, first, number):
 
 
 def read_obj(path: Path) -> tuple[list, list]:
-    """Points (n lists of 3) and faces (lists of indices) of a Wavefront OBJ file.
-
-    Colours behind the coordinates, textures, normals, lines and groups are passed over.
-    """
+    """Points (n lists of 3) and faces (lists of indices) of an OBJ file, and nothing else of it."""
     points, faces, lines = [], [], []
     for number, words in _rows(path):
         if words[0] == "v":
