@@ -1,7 +1,7 @@
-"""The command line `inet`: measure, cover, web, optimize, explore, figures.
+"""The command line `inet`; angles are degrees on it, and radians from the parser on.
 
-Angles are degrees on it, and radians from the parser on.  Wrong input becomes one sentence,
-before the work begins and anything slow is loaded; files are written after all went well.
+Wrong input becomes one sentence, before the work begins and anything slow is loaded; files are
+written after all went well.
 """
 
 import argparse
@@ -33,46 +33,34 @@ examples:
 
 exit codes: 0 done; 1 no net with these angles was found; 2 wrong input, nothing was
 written; 130 stopped by Ctrl-C.  `inet COMMAND --help` shows the options of a command."""
-TEXTS = {  # what a command does, and examples
-    "measure": [
-        "How well a quad mesh keeps two angles, and its quality.",
-        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
-        "inet measure web.obj --theta 60 --theta0 45",
-        "inet measure web.obj --json",
-    ],
-    "cover": [
-        "Cover a surface from a file with a net of two given angles.",
-        "inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj",
-        "inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json",
-    ],
-    "web": [
-        "An exact net on a surface of revolution.",
-        "inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj",
-        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 10 -o vase.ply",
-    ],
-    "optimize": [
-        "Change a quad mesh into a net with the angles you want.",
-        "inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj",
-        "inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj",
-    ],
-    "explore": [
-        "Turn the angles of a net in the browser, on this machine only.",
-        "inet explore",
-        "inet explore roof.obj --port 8000 --open",
-    ],
-    "figures": [
-        "Rerun the notebooks and redraw their figures (in a clone).",
-        "inet figures fig05",
-        "inet figures 3_1 4",
-    ],
+HELP = {  # what a command does, and examples
+    "measure": """How well a quad mesh keeps two angles, and its quality.
+        inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
+        inet measure web.obj --theta 60 --theta0 45
+        inet measure web.obj --json""",
+    "cover": """Cover a surface from a file with a net of two given angles.
+        inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj
+        inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json""",
+    "web": """An exact net on a surface of revolution.
+        inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 10 -o vase.ply""",
+    "optimize": """Change a quad mesh into a net with the angles you want.
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
+        inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj""",
+    "explore": """Turn the angles of a net in the browser, on this machine only.
+        inet explore
+        inet explore roof.obj --port 8000 --open""",
+    "figures": """Rerun the notebooks and redraw their figures (in a clone).
+        inet figures fig05
+        inet figures 3_1 4""",
 }
+TEXTS = {name: [*map(str.strip, text.splitlines())] for name, text in HELP.items()}
 
 
 class Parser(argparse.ArgumentParser):
     """argparse, with one sentence on stderr for a mistake, and no usage text around it."""
 
     def error(self, message):
-        """One sentence and exit code 2."""
         self.exit(WRONG, f"inet: {message} (see {self.prog} --help)\n")
 
 
@@ -128,13 +116,11 @@ def _number(wanted, allowed, made=float):
     """An argparse type: what `made` makes of a finite number that is allowed."""
 
     def read(text):
-        try:
+        with contextlib.suppress(ValueError):
             value = float(text)
-        except ValueError:
-            value = math.nan
-        if not (math.isfinite(value) and allowed(value)):
-            raise argparse.ArgumentTypeError(f"{text} is given, {wanted} is wanted")
-        return made(value)
+            if math.isfinite(value) and allowed(value):
+                return made(value)
+        raise argparse.ArgumentTypeError(f"{text} is given, {wanted} is wanted")
 
     return read
 
@@ -167,12 +153,9 @@ def _write_options(command, keep):
     _say_options(command)
 
 
-def _say_options(command):
-    command.add_argument("--json", action="store_true", help="one JSON object on stdout")
-    _quiet_option(command)
-
-
-def _quiet_option(command):
+def _say_options(command, numbers=True):
+    if numbers:
+        command.add_argument("--json", action="store_true", help="one JSON object on stdout")
     command.add_argument("--quiet", action="store_true", help="no progress bar and no table")
 
 
@@ -209,29 +192,20 @@ def _cover_options(command):
 
 
 def _cover(given):
-    from . import io
-    from .examples import SURFACES
+    from . import examples, io
 
     io.check_output(given.output, given.curves, given.force)
-    if given.surface in SURFACES:
-        (V, F), repaired = SURFACES[given.surface](), []
+    if given.surface in examples.SURFACES:
+        (V, F), repaired = examples.SURFACES[given.surface](), []
     else:
         V, F, repaired = io.surface(given.surface)
     from . import design
 
-    found = design.cover(
-        V,
-        F,
-        given.theta,
-        given.theta0,
-        count=given.quads,
-        size=given.size,
-        direction=given.direction,
-        tolerance=given.tolerance,
-        progress=_progress(given),
-    )
+    asked = given.theta, given.theta0, given.quads, given.size, given.direction
+    ways = {"tolerance": given.tolerance, "progress": _progress(given)}
+    found = design.cover(V, F, *asked, **ways)
     about = found.report
-    notes = _repairs(given.surface, [*repaired, *about.repairs])
+    notes = [f"{given.surface}: {x}" for x in dict.fromkeys([*repaired, *about.repairs])]
     more = {"converged": about.converged, "message": about.message}
     return _finish(given, found.V, found.Q, (), about, notes, more)
 
@@ -248,18 +222,15 @@ def _web_options(command):
     add("-n", type=_whole, metavar="ROWS", help="rows (as many as fit)")
     text = """exact: straight-edged quads with these angles; smooth: points of the smooth web;
         paper: the published algorithm (%(default)s)"""
-    ways = "exact", "smooth", "paper"
-    add("--method", choices=ways, default="exact", help=text)
+    add("--method", choices=("exact", "smooth", "paper"), default="exact", help=text)
     _write_options(command, keep=False)
 
 
 def _web(given):
-    from . import io
+    from . import io, loxodrome
 
     io.check_output(given.output, given.curves, given.force)
     profile = _profile(given.profile)
-    from . import loxodrome
-
     net = loxodrome.web(profile, given.theta, given.theta0, given.m, given.n, given.method)
     about = _report(given, net.V, net.Q)
     more = {"rows": net.rows, "quads_around": given.m, "message": net.message}
@@ -268,7 +239,7 @@ def _web(given):
 
 def _profile(name):
     """The profile of this name, or through the rows of a file, each a radius and a height."""
-    from . import surfaces
+    from . import io, surfaces
 
     if name in surfaces.PROFILES:
         return surfaces.PROFILES[name]()
@@ -277,20 +248,18 @@ def _profile(name):
         raise ValueError(f"--profile {name}: neither {known} nor a file that is there")
     rows = []
     lines = Path(name).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    for k, line in enumerate(lines, 1):
+    for k, line in enumerate(map(str.strip, lines), 1):
         try:
-            radius, height = (float(x) for x in re.split(r"[,;\s]+", line.strip(" \t,;")))
+            radius, height = map(float, re.split(r"[,;\s]+", line.strip(" \t,;")))
             rows.append((radius, height))
         except ValueError:
-            if line.strip() and (rows or re.search(r"\d", line)):
-                what = f"a radius and a height are wanted, not {line.strip()[:40]!r}"
+            if line and (rows or re.search(r"\d", line)):
+                what = f"a radius and a height are wanted, not {line[:40]!r}"
                 raise ValueError(f"{name}, line {k}: {what}") from None
-    if len(rows) < 2:
-        raise ValueError(f"{name}: at least two rows with a radius and a height are wanted")
-    try:
+    with io.named(name):
+        if len(rows) < 2:
+            raise ValueError("at least two rows with a radius and a height are wanted")
         return surfaces.spline_profile(rows)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
 
 
 def _optimize_options(command):
@@ -314,31 +283,19 @@ def _optimize(given):
 
     io.check_output(given.output, given.curves, given.force)
     V, Q, polygons, notes = _read_net(given)
-    near = None
+    ways = {name: getattr(given, name) for name in ("on_surface", "fixed", "via", "tolerance")}
     if given.reference is not None:
         W, F, repaired = io.surface(given.reference)
-        notes += _repairs(given.reference, repaired)
+        notes += [f"{given.reference}: {sentence}" for sentence in repaired]
         from . import reference
 
-        near = reference.mesh(W, F)
+        ways["reference"] = reference.mesh(W, F)
     from . import solver
 
     rims = {frozenset(loop.tolist()) for loop in mesh.boundary_loops(Q)}
-    found = solver.optimize(
-        V,
-        Q,
-        given.theta,
-        given.theta0,
-        given.lam,
-        given.mu,
-        reference=near,
-        on_surface=given.on_surface,
-        fixed=given.fixed,
-        polygons=[p for p in polygons if frozenset(p.tolist()) in rims],
-        via=given.via,
-        tolerance=given.tolerance,
-        progress=_progress(given),
-    )
+    ways["polygons"] = [p for p in polygons if frozenset(p.tolist()) in rims]
+    asked = given.theta, given.theta0, given.lam, given.mu
+    found = solver.optimize(V, Q, *asked, progress=_progress(given), **ways)
     names = "converged", "message", "lam", "mu", "seconds"
     more = {name: getattr(found, name) for name in names} | {"steps": len(found.history) - 1}
     about = _report(given, found.V, Q, polygons)
@@ -355,6 +312,11 @@ def _explore_options(command):
 def _explore(given):
     from . import io
 
+    def ready(address):
+        print(f"Isogonal nets: {address} (Ctrl-C ends it)", flush=True)
+        if given.open:
+            webbrowser.open(address)
+
     surface = given.surface and io.surface(given.surface)
     if surface:
         from . import repair
@@ -362,24 +324,14 @@ def _explore(given):
         repair.clean(surface.V, surface.F)  # refuses what cannot be covered
     from .explorer import notebook
 
-    try:
-        from .explorer import serve
-    except ImportError as error:
-        raise ImportError(notebook.MISSING) from error
-    serve.serve(surface, given.surface, given.port, functools.partial(_ready, given.open))
+    notebook.server().serve(surface, given.surface, given.port, ready)
     return DONE
-
-
-def _ready(browser, address):
-    print(f"Isogonal nets: {address} (Ctrl-C ends it)", flush=True)
-    if browser:
-        webbrowser.open(address)
 
 
 def _figures_options(command):
     text = "beginnings of notebook names, or figures; none: all"
     command.add_argument("names", nargs="*", help=text)
-    _quiet_option(command)
+    _say_options(command, numbers=False)
 
 
 def _figures(given):
@@ -413,9 +365,8 @@ def _read_net(given, must_label=True):
     from . import io, mesh
 
     V, Q, polygons = io.net(given.net)
-    notes = []
     try:
-        labelled = mesh.label(Q)
+        labelled, notes = mesh.label(Q), []
         if (labelled != Q).any():
             notes = ["the faces did not agree on u and v: all are labelled like the first one now"]
     except ValueError as reason:
@@ -431,17 +382,13 @@ def _turned(V, Q, theta, theta0):
         return []
     from . import measure
 
-    a, b = (float(x.mean()) for x in measure.angles(V, Q))
-    off = max(abs(a - theta), abs(b - theta0))
-    a, b = math.pi - a, math.pi - b
-    if off < 2 * max(abs(a - theta), abs(b - theta0)) + math.radians(1):
+    means = [float(x.mean()) for x in measure.angles(V, Q)]
+    turned = [math.pi - x for x in means]
+    off, other = (max(abs(a - theta), abs(b - theta0)) for a, b in (means, turned))
+    if off < 2 * other + math.radians(1):
         return []
-    other = f"{math.degrees(a):.6g} and {math.degrees(b):.6g}"
-    return [f"u and v may be exchanged in the file: with the other labels its angles are {other}"]
-
-
-def _repairs(path, sentences):
-    return [f"{path}: {sentence}" for sentence in dict.fromkeys(sentences)]
+    words = " and ".join(f"{math.degrees(x):.6g}" for x in turned)
+    return [f"u and v may be exchanged in the file: with the other labels its angles are {words}"]
 
 
 def _report(given, V, Q, polygons=()):

@@ -28,18 +28,14 @@ def saddle_with_hole(n: int = 20) -> tuple[np.ndarray, np.ndarray]:
 
 
 def hanging_shell(n: int = 30) -> tuple[np.ndarray, np.ndarray]:
-    """A square cloth of n by n squares that hangs from its four corners, turned upside down.
-
-    The edges are springs of no length, stronger at the border: equilibrium is one linear system.
-    """
+    """A cloth of n by n squares, a net of springs, that hangs from its corners, upside down."""
     from .solver import sparse  # slow to load
 
     n = check_whole("n", n, 2)
     Q = mesh.grid_quads(n, n)
     x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1), indexing="ij")
     V = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
-    ends = Q.ravel(), np.roll(Q, -1, axis=1).ravel()
-    graph = coo_array((np.ones(Q.size), ends), shape=(len(V), len(V))).tocsr()
+    graph = coo_array((np.ones(Q.size), mesh.half_edges(Q)), shape=(len(V), len(V))).tocsr()
     graph = graph + graph.T
     graph.data = np.where(graph.data == 1, n / 2, 1.0)  # an edge of one face, of two
     stiffness = (diags_array(graph.sum(axis=1)) - graph).tocsr()
@@ -72,8 +68,7 @@ def vertex(valence: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
 def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A polygon whose corners have valence 3, in `rings` rings of `sides` quads: (V, Q, polygon).
 
-    u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0, the radii in a
-    geometric series that makes the faces nearly square (from 12 sides on).  Paper: B9.
+    u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0.  Paper: B9.
     """
     sides, rings = check_whole("sides", sides, 3), check_whole("rings", rings)
     around, step = 2 * np.pi / sides * np.arange(sides), min(2 * np.pi / sides, 0.5)
@@ -84,13 +79,10 @@ def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     return V, Q, index[:, 0]
 
 
-def moebius_strip(
-    length: int = 24, width: int = 3, reach: float = 0.45
-) -> tuple[np.ndarray, np.ndarray]:
-    """A strip of length x width quads, closed with half a twist: (V, Q), `width` rows.
+def moebius_strip(length: int = 24, width: int = 3, reach: float = 0.45) -> tuple:
+    """A strip of length x width quads around the unit circle, closed with half a twist: (V, Q).
 
-    The middle curve is the unit circle, reach is half the width.  No orientation exists.
-    Paper: B9.
+    reach is half the width.  No orientation exists.  Paper: B9.
     """
     length, width = check_whole("length", length, 5), check_whole("width", width)
     angle = 2 * np.pi * np.arange(length)[:, None] / length
@@ -114,7 +106,7 @@ def seam(Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     there is no edge across which they disagree.  Paper: B9.
     """
     Q = mesh.check_quads(Q).copy()
-    start, end = Q.ravel(), np.roll(Q, -1, axis=1).ravel()
+    start, end = np.array(mesh.half_edges(Q))
     across = {face: [] for face in range(len(Q))}
     for a, b in mesh.pairs(Q).tolist():
         across[a // 4].append((a, b))

@@ -1,7 +1,6 @@
 """Files that appear whole or not at all: written beside their place as `.new-PID-...`, renamed.
 
-What a killed process has left is removed by the next that writes into the folder.  Nothing
-slow is imported: `start` needs this module before all others.
+What a killed process has left is removed by the next that writes into the folder.
 """
 
 import os
@@ -53,12 +52,12 @@ def clear() -> None:
 
 def sweep(folder: str | Path) -> None:
     """Remove what processes that are gone have left in a folder, which need not be there."""
-    folder, live = Path(folder), {path.name for path in LIVE}
+    live = {path.name for path in LIVE}
     with suppress(OSError):
         for name in os.listdir(folder):
             found = re.match(r"\.new-(\d{1,9})-", name)
             if found and name not in live and _gone(int(found[1])):
-                _remove(folder / name)
+                _remove(Path(folder) / name)
 
 
 def _remove(path):
@@ -76,9 +75,7 @@ def _gone(pid):
         import ctypes
 
         handle = ctypes.windll.kernel32.OpenProcess(0x1000, False, pid)  # to ask, nothing else
-        if handle:
-            ctypes.windll.kernel32.CloseHandle(handle)
-        return not handle
+        return not (handle and ctypes.windll.kernel32.CloseHandle(handle))
     try:
         os.kill(pid, 0)
     except OSError as error:

@@ -10,9 +10,8 @@ def place(V: np.ndarray, Q: np.ndarray, curves: list, lam: float, theta: float) 
     """A plane motif, similar in every quad: a list of arrays (f, k, 3), one for each curve.
 
     curves: a list of (k, 2) point arrays, drawn around 0 in the plane of the parallelogram
-    with the half sides (1, 0) along d1 and lam (cos theta, sin theta) along d2; the motif
-    fits when it stays inside.  lam, theta (radians): those of the net.  On a net with these
-    angles every copy is a similar image; elsewhere it is an affine one.
+    with the half sides (1, 0) along d1 and lam (cos theta, sin theta) along d2, those of the
+    net (radians); elsewhere the copies are affine images.
     """
     lam, theta = check_positive("lam", lam), check_angle("theta", theta)
     sides = np.array([[1.0, 0.0], [lam * np.cos(theta), lam * np.sin(theta)]])
@@ -30,10 +29,7 @@ def place(V: np.ndarray, Q: np.ndarray, curves: list, lam: float, theta: float) 
 
 
 def weave(lam: float, theta: float, share: float = 0.35) -> list[np.ndarray]:
-    """Two waves, each from a corner of the parallelogram to the opposite one: list of (k, 2).
-
-    The corners are the middles of the quad's edges, where those of its neighbours go on.
-    """
+    """Two waves between opposite corners of the parallelogram, [(25, 2), (25, 2)]: see `place`."""
     t = np.linspace(-1, 1, 25)
     one, two = np.array([1.0, 0.0]), lam * np.array([np.cos(theta), np.sin(theta)])
     corner, other, wave = one + two, one - two, share * np.sin(np.pi * t)

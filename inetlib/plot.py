@@ -27,10 +27,7 @@ def use_style():
 
 
 def canvas(panels, width: float, height: float, ratios=None):
-    """A figure with named panels: (figure, {name: axes}), axes off and of equal aspect.
-
-    panels: rows of names, see `pyplot.subplot_mosaic`; width, height: inches; ratios: of columns.
-    """
+    """(figure, {name: axes}): panels as of `subplot_mosaic`, inches, ratios of the columns."""
     use_style()
     figure = plt.figure(figsize=(width, height))
     axes = figure.subplot_mosaic(panels, width_ratios=ratios)
@@ -56,8 +53,8 @@ def plane(points) -> np.ndarray:
 def curves(ax, lines, colour, width=1.1, style="-", zorder=2, alpha=None):
     """Polylines (complex or (k, 2) arrays) as one collection; returns it."""
     look = {"colors": colour, "linewidths": width, "linestyles": style, "alpha": alpha}
-    lines = [plane(line) for line in lines]
-    return _added(ax, LineCollection(lines, zorder=zorder, capstyle="round", **look))
+    lines = LineCollection([*map(plane, lines)], zorder=zorder, capstyle="round", **look)
+    return _added(ax, lines)
 
 
 def polygons(ax, V, faces, fill=FILL, edge="none", width=0.6, zorder=1, alpha=None):
@@ -99,8 +96,7 @@ def net(ax, V: np.ndarray, Q: np.ndarray, families=("u", "v"), width=1.1):
 
 def black_quads(ax, V: np.ndarray, Q: np.ndarray, fill=FILL, edge=INK, width=0.4):
     """The inscribed parallelograms of a planar net."""
-    board = mesh.checkerboard(V, Q)
-    polygons(ax, board.V, board.black, fill, edge, width)
+    polygons(ax, *mesh.checkerboard(V, Q)[:2], fill, edge, width)
 
 
 def arc(apex, a, b, radius: float, samples: int = 40) -> np.ndarray:
@@ -146,8 +142,7 @@ def camera(azimuth: float, elevation: float):
     azimuth, elevation: radians, the direction from which the scene is seen; z points up.
     """
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
-    right, up = np.array([-sa, ca, 0]), np.array([-se * ca, -se * sa, ce])
-    towards = np.array([ce * ca, ce * sa, se])
+    right, up, towards = [-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]
 
     def project(points):
         points = np.asarray(points, dtype=float)
@@ -167,10 +162,7 @@ def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35) -> np.ndarr
 
 
 def order(keys) -> np.ndarray:
-    """The places of the keys (k,) from the smallest to the largest; ties keep their order.
-
-    Ties: within `ties.TIE` of the range of all, or within the rounding of the largest.
-    """
+    """The places of the keys (k,) from the smallest to the largest; ties keep their order."""
     keys = np.asarray(keys, dtype=float)
     close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
     return np.argsort(ties.ranks(keys, close), kind="stable")
@@ -185,8 +177,7 @@ def families(V, Q, widths):
 def cells(V, Q, white=False):
     """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
 
-    light: the corners left of every face, or with `white` the white quads of the checkerboard and
-    the corners that these leave along the rim.
+    light: the corners left, or with `white` the white quads, and the corners left at the rim.
     """
     board = mesh.checkerboard(V, Q)
     black = board.black + len(V)
@@ -226,6 +217,5 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
     pieces = [pieces[k] for k in order(np.concatenate(keys))]
     paths, inside, edges, widths = map(list, zip(*pieces, strict=True))
     look = {"facecolors": inside, "edgecolors": edges, "linewidths": widths}
-    collection = PathCollection([Path(p) for p in paths], capstyle="round", **look)
     ax.update_datalim(np.concatenate(paths))
-    return _added(ax, collection)
+    return _added(ax, PathCollection([*map(Path, paths)], capstyle="round", **look))

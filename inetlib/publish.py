@@ -1,7 +1,4 @@
-"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed.
-
-On another machine the last digits of all these differ: what shows the same is kept.
-"""
+"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed."""
 
 import hashlib
 import io
@@ -43,47 +40,39 @@ def save(drawing: Drawing, folder) -> dict:
     """Write the figure into a folder, unless what is there shows the same; its manifest entry.
 
     folder/NAME.svg, NAME.png, data/NAME.npz and the entry in manifest.json go together: where one
-    of them differs by more than the tolerances of `same`, all are replaced, else all are kept.
-    When anything fails the old files stay.  `folder` is made when only its last part is missing.
+    differs by more than the tolerances of `same`, all are replaced.  When anything fails the old
+    files stay.  `folder` is made when only its last part is missing.
     """
-    folder, name = Path(folder), drawing.name
+    folder = Path(folder)
     folder.mkdir(exist_ok=True)
-    manifest = read_manifest(folder)
     with files.scratch(folder) as fresh:
-        _draw(drawing, fresh)
-        if not differences(name, fresh, folder):
-            return manifest[name]
-        manifest |= read_manifest(fresh)
-        _write_manifest(manifest, fresh)
-        (folder / "data").mkdir(exist_ok=True)
-        for file in (*_names(name), "manifest.json"):  # the last vouches for the others
-            os.replace(fresh / file, folder / file)
-    return manifest[name]
+        _draw(drawing, fresh, read_manifest(folder))
+        if differences(drawing.name, fresh, folder):
+            (folder / "data").mkdir(exist_ok=True)
+            for file in (*_names(drawing.name), "manifest.json"):  # it vouches for the others
+                os.replace(fresh / file, folder / file)
+    return read_manifest(folder)[drawing.name]
 
 
 def _names(name):
     return f"{name}.svg", f"{name}.png", f"data/{name}.npz"
 
 
-def _draw(drawing, folder):
-    """Write the three files of a drawing and a manifest of it alone."""
+def _draw(drawing, folder, manifest):
+    """Write the three files of a drawing, and the manifest with its entry."""
     svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
-    figure, text = drawing.figure, io.StringIO()
-    figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    svg.write_text(same.plain_svg(text.getvalue()), encoding="utf-8", newline="\n")
-    figure.savefig(png, format="png", metadata={"Software": None})
+    drawn = io.StringIO()
+    drawing.figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": None})
+    svg.write_text(same.plain_svg(drawn.getvalue()), encoding="utf-8", newline="\n")
+    drawing.figure.savefig(png, format="png", metadata={"Software": None})
     np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})
     off = np.degrees(deviations(drawing.nets)).tolist() if drawing.nets else (None, None)
-    entry = {
-        "function": drawing.function,
-        "parameters": drawing.parameters,
-        "sha256": _hash(data),
-        "max_deviation_theta_deg": off[0],
-        "max_deviation_theta0_deg": off[1],
-        "claims": drawing.claims,
-    }
-    _write_manifest({drawing.name: rounded(entry)}, folder)
+    entry = {"function": drawing.function, "parameters": drawing.parameters, "sha256": _hash(data)}
+    entry |= {"max_deviation_theta_deg": off[0], "max_deviation_theta0_deg": off[1]}
+    manifest[drawing.name] = rounded(entry | {"claims": drawing.claims})
+    text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False) + "\n"
+    (folder / "manifest.json").write_text(text, encoding="utf-8", newline="\n")
 
 
 def _plain(array):
@@ -104,16 +93,11 @@ def _hash(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def _write_manifest(manifest, folder):
-    text = json.dumps(dict(sorted(manifest.items())), indent=2, allow_nan=False)
-    (folder / "manifest.json").write_text(text + "\n", encoding="utf-8", newline="\n")
-
-
 def differences(name: str, one, two) -> list:
     """What differs between the figure `name` in two folders by more than the tolerances of `same`.
 
-    Words: "missing", "unreadable", or some of "manifest", "data NAME" for each array, "svg" and
-    "png"; "manifest" also where that of `two` does not have the hash of its data.
+    Words: "missing", "unreadable", or some of "manifest" (in `two` it has the hash of the data,
+    too), "data NAME" for each array, "svg" and "png".
     """
     svg, png, data = ([Path(x) / file for x in (one, two)] for file in _names(name))
     entries = [read_manifest(folder).get(name) for folder in (one, two)]
@@ -124,10 +108,8 @@ def differences(name: str, one, two) -> list:
         good = same.claims(*stated) and entries[1]["sha256"] == _hash(data[1])
         found = [] if good else ["manifest"]
         found += [f"data {array}" for array in same.data(*map(read_data, data))]
-        if not same.svg(*(path.read_text(encoding="utf-8") for path in svg)):
-            found.append("svg")
-        if not same.picture(*(path.read_bytes() for path in png)):
-            found.append("png")
+        found += ["svg"] * (not same.svg(*(path.read_text(encoding="utf-8") for path in svg)))
+        found += ["png"] * (not same.picture(*(path.read_bytes() for path in png)))
     except (OSError, EOFError, ValueError, zipfile.BadZipFile):  # a broken file, half a merge
         return ["unreadable"]
     return found
@@ -145,10 +127,9 @@ def save_text(text: str, path):
     Paper: Table 1.
     """
     path = Path(path)
-    if path.exists() and same.text(path.read_text(encoding="utf-8"), text):
-        return
-    with files.replacing(path) as name:
-        name.write_text(text, encoding="utf-8", newline="\n")
+    if not (path.exists() and same.text(path.read_text(encoding="utf-8"), text)):
+        with files.replacing(path) as new:
+            new.write_text(text, encoding="utf-8", newline="\n")
 
 
 def preview(drawing: Drawing, colours: int = 96):
@@ -171,5 +152,6 @@ def read_manifest(folder) -> dict:
     try:
         return {} | json.loads(path.read_text(encoding="utf-8"))
     except (ValueError, TypeError) as error:
-        message = f"{path} is not a JSON object: delete it and make the figures again"
-        raise ValueError(message) from error
+        raise ValueError(
+            f"{path} is not a JSON object: delete it and redraw the figures"
+        ) from error

@@ -1,7 +1,6 @@
 """What counts as the same: texts, numbers, arrays, drawings and pictures, within tolerances.
 
-The last digits of computed numbers differ from one processor to the next: what is stored is
-replaced only when something new differs from it by more than that.
+The last digits of computed numbers differ from one processor to the next.
 """
 
 import io
@@ -27,27 +26,22 @@ ROUNDED = re.compile(r'(\b(?:d|x|y|width|height|points)="|translate\()([^")]*)')
 def text(one: str, two: str) -> bool:
     """Whether two texts are equal, decimals within one unit of their last digits.
 
-    What a text shows is what it promises: 0.25 and 0.26 are the same, 0.25 and 0.27 are not,
-    and nor are 7 and 8: whole numbers count as words.
+    0.25 and 0.26 are the same, 0.25 and 0.27 are not, nor are 7 and 8: whole numbers are words.
     """
-    if NUMBER.split(one) != NUMBER.split(two):
-        return False
-    pairs = zip(NUMBER.findall(one), NUMBER.findall(two), strict=True)
-    return all(a == b or _near(a, b) for a, b in pairs)
+    numbers = NUMBER.findall(one), NUMBER.findall(two)
+    return NUMBER.split(one) == NUMBER.split(two) and all(map(_near, *numbers))
 
 
 def _near(a, b):
-    if not all(re.search(r"[.eE]", x) for x in (a, b)):
-        return False
+    whole = not all(re.search(r"[.eE]", x) for x in (a, b))
+    if a == b or whole:
+        return a == b
     a, b = Decimal(a), Decimal(b)
     return abs(a - b) <= Decimal(10) ** max(x.as_tuple().exponent for x in (a, b))
 
 
 def claims(one, two) -> bool:
-    """Whether two claims of a figure, numbers, words, lists or dicts of them, are the same.
-
-    Decimals are so within one unit of the last digit that either of them states.
-    """
+    """Whether claims (numbers, words, lists, dicts) are the same, decimals to their last digit."""
     if isinstance(one, dict) and isinstance(two, dict):
         return one.keys() == two.keys() and all(claims(one[k], two[k]) for k in one)
     if isinstance(one, (list, tuple)) and isinstance(two, (list, tuple)):
@@ -61,20 +55,17 @@ def claims(one, two) -> bool:
 
 def data(one: dict, two: dict) -> list:
     """The names of the arrays that differ, or are in one of two dicts of real arrays only."""
-    size = max((float(np.ptp(x)) for x in one.values() if np.size(x)), default=0.0)
+    most = DATA * max((float(np.ptp(x)) for x in one.values() if np.size(x)), default=0.0)
     differ = sorted(one.keys() ^ two.keys())
     for name in sorted(one.keys() & two.keys()):
-        a, b = np.asarray(one[name]), np.asarray(two[name])
-        if a.shape != b.shape or not np.allclose(a, b, rtol=0, atol=DATA * size, equal_nan=True):
+        a, b = one[name], two[name]
+        if np.shape(a) != np.shape(b) or not np.allclose(a, b, rtol=0, atol=most, equal_nan=True):
             differ.append(name)
     return differ
 
 
 def plain_svg(svg: str) -> str:
-    """The text of an SVG by matplotlib with names in order of appearance and two decimals.
-
-    matplotlib names clips and markers by a hash of numbers with all their digits.
-    """
+    """An SVG by matplotlib with two decimals and with numbers for the hashes in its names."""
     names = {}
     for match in HASHED.finditer(svg):
         names.setdefault(match[0][len('id="') : -1], f"{match[1]}-{len(names) + 1}")
@@ -104,14 +95,10 @@ def _within(pair, most):
 
 
 def picture(one: bytes, two: bytes, levels: float = LEVELS, mean: float = MEAN) -> bool:
-    """Whether two PNG files look the same.
-
-    levels: by which one pixel may differ, of 255; mean: of all pixels, as a part of 1.
-    """
+    """Whether two PNG files look the same; levels: of 255, for one pixel; mean: of 1, for all."""
     if one == two:
         return True
-    pair = [PIL.Image.open(io.BytesIO(x)).convert("RGBA") for x in (one, two)]
-    if pair[0].size != pair[1].size:
+    a, b = (np.asarray(PIL.Image.open(io.BytesIO(x)).convert("RGBA"), float) for x in (one, two))
+    if a.shape != b.shape:
         return False
-    apart = np.abs(np.subtract(*(np.asarray(x, float) for x in pair)))
-    return bool(apart.max() <= levels and apart.mean() <= 255 * mean)
+    return bool(np.abs(a - b).max() <= levels and np.abs(a - b).mean() <= 255 * mean)

@@ -1,7 +1,6 @@
 """The way in of `inet` as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks:
-a handler tidies up, speaks, and ends the process.  Only programs install it, before all else.
+Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks.
 """
 
 import os
@@ -31,8 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
 def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    sentence() is said on stderr; fresh: on a new line, after a progress bar.  A signal that
-    was ignored stays so, as for programs in the background of a script.
+    sentence() is said on stderr; fresh: on a new line.  A signal that was ignored stays so.
     """
 
     def stop(number, frame):

@@ -1,7 +1,6 @@
 """Comparisons of computed numbers that may tie: equal ones are decided by index.
 
-The last digits of floating point differ between processors, so numbers that are equal by
-symmetry come out equal on one machine and not on the next.  Here they count as equal.
+Numbers that are equal by symmetry differ in their last digits, on each processor in others.
 """
 
 import numpy as np

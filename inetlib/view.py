@@ -1,7 +1,4 @@
-"""Shaded scenes of nets with pyvista (the extra `view`), imported when one is asked for.
-
-Where it or OpenGL is missing, the error is a sentence; figures are drawn by `plot`, without both.
-"""
+"""Shaded scenes of nets with pyvista (the extra `view`), imported when one is asked for."""
 
 import os
 import subprocess
@@ -50,7 +47,7 @@ def headless() -> bool:
 def available() -> tuple[bool, str]:
     """(True, a sentence) when pyvista can draw off screen here, else (False, what is missing).
 
-    A picture is tried once, in a process of its own: without OpenGL, VTK may end the process.
+    It is tried once, in a process of its own: without OpenGL, VTK may end the process.
     """
     try:
         pyvista_module()
@@ -64,22 +61,14 @@ def available() -> tuple[bool, str]:
     return True, "pyvista draws off screen here"
 
 
-def scene(
-    V: np.ndarray,
-    Q: np.ndarray,
-    families: mesh.Families | None = None,
-    colours: dict | None = None,
-    width: float = 0.0035,
-    view: tuple = (-1.0, 0.5),
-    live: bool = False,
-) -> Any:
+def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=False) -> Any:
     """A `pyvista.Plotter` with the shaded faces of a net and its curves as tubes.
 
-    V: (n, 3), Q: (f, 4).  families: vertex indices (k,) or points (k, 3), default
-    `mesh.polylines(Q)`; of it, `_replace(d1=[], d2=[])` leaves the diagonals out.  colours:
-    {"face": ..., "u": ...}, where they shall differ from COLOURS.  width: of a tube, as a part
-    of the bounding box's diagonal.  view: azimuth and elevation (radians) of the viewer; z
-    points up.  live: for a window.  ImportError without pyvista, RuntimeError without OpenGL.
+    V: (n, 3), Q: (f, 4).  families: `mesh.Families` of vertex indices (k,) or points (k, 3),
+    default `mesh.polylines(Q)`.  colours: {"face": ..., "u": ...}, where they differ from
+    COLOURS.  width: of a tube, as a part of the bounding box's diagonal.  view: azimuth and
+    elevation (radians) of the viewer.  live: whether for a window.  ImportError without
+    pyvista, RuntimeError without OpenGL.
     """
     pyvista = pyvista_module()
     V, Q = mesh.check_arrays(V, Q)
@@ -94,9 +83,9 @@ def scene(
     radius = width / 2 * np.linalg.norm(np.ptp(V, axis=0))
     for name, lines in (families or mesh.polylines(Q))._asdict().items():
         if points := [V[line] if np.ndim(line) == 1 else line for line in lines]:
-            starts = np.cumsum([0, *(len(p) for p in points)])
-            cells = [[len(p), *range(s, s + len(p))] for s, p in zip(starts, points, strict=False)]
-            curves = pyvista.PolyData(np.concatenate(points), lines=np.concatenate(cells))
+            ends = np.cumsum([len(p) for p in points])
+            cells = pyvista.CellArray.from_irregular_cells(np.split(np.arange(ends[-1]), ends[:-1]))
+            curves = pyvista.PolyData(np.concatenate(points), lines=cells)
             tubes = curves.tube(radius=radius, n_sides=12)
             plotter.add_mesh(tubes, color=colours[name], ambient=0.35, smooth_shading=True)
     aim(plotter.camera, V, view)

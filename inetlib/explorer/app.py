@@ -31,8 +31,7 @@ class App:
         self.state = self.server.state
         self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
-        self._task = self._search = None
-        self._remake = False
+        self._task, self._search, self._remake = None, None, False
         self.state.trame__title = "Isogonal nets"
         self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
         self.state.numbers = {}

@@ -1,7 +1,4 @@
-"""What the explorer can be asked for: one record of checked values, and the same as a link.
-
-Angles are degrees here, as on the command line and on the page.
-"""
+"""What the explorer can be asked for: checked values, angles in degrees; the same as a link."""
 
 from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
@@ -60,9 +57,8 @@ class Range(NamedTuple):
             number = float(value)
         except (TypeError, ValueError, OverflowError):
             return None
-        at_end = self.open and number in (self.low, self.high)
-        broken = self.whole and not number.is_integer()
-        if not self.low <= number <= self.high or at_end or broken:
+        within = self.low < number < self.high or (number in self[:2] and not self.open)
+        if not within or (self.whole and not number.is_integer()):
             return None
         return int(number) if self.whole else number
 

@@ -1,9 +1,8 @@
 """What a net looks like in the explorer: its cells, curves, colours, and pictures of it."""
 
 import io
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -11,7 +10,6 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from .. import plot
-from .choices import Choice
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
 
@@ -66,14 +64,11 @@ class Layout(NamedTuple):
     lines: dict
 
 
-def layout(
-    Q: np.ndarray, count: int, families: Sequence[str], parallelograms: bool = False
-) -> Layout:
-    """The `Layout` of quads Q on `count` vertices.
+def layout(Q, count, families, parallelograms=False) -> Layout:
+    """The `Layout` of quads Q (f, 4) on `count` vertices, with the named families of curves.
 
     With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
-    Diagonals run through the mean of the four corners, on the surface that is filled: where
-    they are shown, the quads become triangles around it.
+    Where diagonals are shown, the quads become triangles around the mean of their corners.
     """
     after, before = np.roll(Q, -1, axis=1), np.roll(Q, 1, axis=1)
     sides = np.sort(np.stack([Q, after], axis=2).reshape(-1, 2), axis=1)
@@ -115,9 +110,7 @@ def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> 
     return np.repeat(pair, [quads, triangles], axis=0)
 
 
-def picture(
-    V: np.ndarray, Q: np.ndarray, choice: Choice, shade: Any, camera: Any, form: str
-) -> bytes:
+def picture(V, Q, choice, shade, camera, form) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
     choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
@@ -125,9 +118,8 @@ def picture(
     plan = layout(Q, len(V), choice.families, choice.parallelograms)
     W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
     fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")
-    width, lines = 0.6 * line_width(len(Q)), []
-    for name, pairs in plan.lines.items():
-        lines += [(W[pair], plot.COLOURS[name], width) for pair in pairs]
+    width, named = 0.6 * line_width(len(Q)), plan.lines.items()
+    lines = [(W[pair], plot.COLOURS[name], width) for name, pairs in named for pair in pairs]
     file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
     with matplotlib.rc_context():
         plot.use_style()

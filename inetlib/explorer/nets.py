@@ -1,6 +1,5 @@
 """The nets of the explorer: for each kind three lines of Python, run and printed alike."""
 
-from collections.abc import Callable
 from math import cos, radians
 from typing import NamedTuple
 
@@ -90,8 +89,9 @@ def _plane(name):
     if name == "exp":
         start = GRID.replace("{edge}", "{edge}, kappa=1")
     if name in ("inverse", "moebius"):
-        message = "conformal image: the angles are those of a smooth net, "
-        message += "up to the square of the edge"
+        message = (
+            "conformal image: the angles are those of a smooth net, up to the square of the edge"
+        )
     return Recipe("conformal", start, f"conformal.quads({MAPS[name]})", message)
 
 
@@ -108,9 +108,7 @@ def _isothermal(name, inverted):
     return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
 
 
-def make(
-    choice: Choice, surface: tuple | None = None, callback: Callable = lambda *_: None
-) -> tuple[np.ndarray, np.ndarray, str]:
+def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
     """V (n, 3), Q (f, 4) of a choice, and a sentence on the net; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation

@@ -59,20 +59,12 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     return Live(address, picture, height)
 
 
-def turn(
-    V: np.ndarray,
-    Q: np.ndarray,
-    families: mesh.Families | None = None,
-    colours: dict | None = None,
-    width: float = 0.0035,
-    view: tuple = (-1.0, 0.5),
-    live: bool | None = None,
-) -> Any:
+def turn(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None) -> Any:
     """The `view.scene` of a net for a reader, to be turned by hand, or as a still IPython Image.
 
     live: by default where there is a person: in JupyterLab as a `Live` page that the browser draws
-    (in its own colours and widths, with the families that have curves), in a script with a
-    display as a window.  ValueError for arrays that are no net.
+    in its own colours and widths, in a script with a display as a window.  ValueError for arrays
+    that are no net.
     """
     notebook = "ipykernel" in sys.modules
     if live is None:
@@ -123,17 +115,22 @@ def _address(port):
     return f"{hub}proxy/{port}/" if hub else f"http://127.0.0.1:{port}/"
 
 
+def server() -> Any:
+    """The module `serve`, or an ImportError that says what it needs."""
+    try:
+        from . import serve
+    except ImportError as error:
+        raise ImportError(MISSING) from error
+    return serve
+
+
 def _open_door():
     """One server a process, in a thread of its own, that ends with the process."""
     global _door
     with _lock:
         if _door is None:
-            try:
-                from .serve import Door
-            except ImportError as error:
-                raise ImportError(MISSING) from error
             guarded = "JUPYTERHUB_SERVICE_PREFIX" not in os.environ  # the hub is a guard itself
-            door, loop = Door(guarded=guarded), asyncio.new_event_loop()
+            door, loop = server().Door(guarded=guarded), asyncio.new_event_loop()
             threading.Thread(target=loop.run_forever, daemon=True).start()
             asyncio.run_coroutine_threadsafe(door.open(0), loop).result(60)
             _door = door

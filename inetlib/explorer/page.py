@@ -203,20 +203,17 @@ def _bar(given):
 
 
 def _button(icon, words, name="", **does):
-    classes = f"text-none {name}"
-    with v3.VBtn(size="small", variant="text", classes=classes, title=words, **does):
+    with v3.VBtn(size="small", variant="text", classes=f"text-none {name}", title=words, **does):
         v3.VIcon(icon, start=True)
         html.Span(words, classes="d-none d-md-inline")
 
 
 def _saved(suffix, package):
     """One format that the net can be saved in, if the package that it needs is there."""
-    words = "net with its curves" if suffix in WITH_CURVES else "net"
-    words = "picture" if suffix in MIME else words
+    words = "picture" if suffix in MIME else "net" + " with its curves" * (suffix in WITH_CURVES)
     mime = MIME.get(suffix, "application/octet-stream")
     about = {"title": f"{suffix[1:].upper()}, {words}", "disabled": bool(package)}
-    if package:
-        about["subtitle"] = f"needs the package {package}"
+    about["subtitle"] = f"needs the package {package}" if package else None
     v3.VListItem(click=f"utils.get('inet').save('{suffix}', '{mime}')", **about)
 
 

@@ -4,6 +4,7 @@ Lines are drawn in the page's own colours: `currentColor`, and the classes u, v,
 """
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -26,16 +27,12 @@ def parallelogram(theta: float, theta0: float) -> str:
     scale = min((BOX[0] - 60) / np.ptp(shape.real), (BOX[1] - 44) / np.ptp(shape.imag))
     A, B, C, D = centre + scale * shape.conj()
     least = min(abs(C - B), abs(A - B))
-    parts = [
-        _line(A, C, "v", 1.5),
-        _line(B, D, "u", 1.5),
-        _line(B, C, "d1", 3),
-        _line(A, D, "d1", 3),
-        _line(B, A, "d2", 3),
-        _line(C, D, "d2", 3),
-        _arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0]),
-        _arc(centre, D - centre, A - centre, min(22, 0.4 * abs(D - centre)), NAMES[1]),
-    ]
+    parts = [_line(A, C, "v", 1.5), _line(B, D, "u", 1.5)]
+    parts += [_line(*side, "d1", 3) for side in ((B, C), (A, D))]
+    parts += [_line(*side, "d2", 3) for side in ((B, A), (C, D))]
+    parts.append(_arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0]))
+    reach = min(22, 0.4 * abs(D - centre))
+    parts.append(_arc(centre, D - centre, A - centre, reach, NAMES[1]))
     return _svg(BOX, parts, f"parallelogram with the angle {np.degrees(theta):.4g} degrees")
 
 
@@ -49,10 +46,8 @@ def histograms(off: Sequence[np.ndarray], asked: tuple[float, float]) -> str:
         count, _ = np.histogram(np.clip(values, -reach, reach), BINS, (-reach, reach))
         for k in np.flatnonzero(count):
             high = max(1.5, 40 * count[k] / count.max())
-            parts.append(
-                f'<rect class="bar{row}" x="{left + k * wide:.1f}" y="{base - high:.1f}" '
-                f'width="{wide - 1:.1f}" height="{high:.1f}"/>'
-            )
+            box = f'x="{left + k * wide:.1f}" y="{base - high:.1f}" width="{wide - 1:.1f}"'
+            parts.append(f'<rect class="bar{row}" {box} height="{high:.1f}"/>')
         parts.append(_line(complex(left, base), complex(right, base), "axis", 1))
         parts.append(_text(left, base - 46, f"{name} \u2212 {angle:.6g}\u00b0", "start"))
     for x, value, anchor in ((left, -reach, "start"), (middle, 0, "middle"), (right, reach, "end")):
@@ -72,12 +67,10 @@ def profile(radii: Sequence[float]) -> str:
     scale = min((box[0] - 16) / max(1.3, 1.1 * max(radii)), (box[1] - 16) / HEIGHTS[-1])
     corner = complex(8, box[1] - 8)
     parts = [_line(8 + 4j, complex(8, box[1] - 4), "axis", 1)]
-    try:
+    with suppress(ValueError):  # the page says why there is no net
         curve = spline_profile(points)
         t = np.linspace(curve.start, curve.stop, 81)
         parts.append(_curve(corner + scale * (curve.radius(t) - 1j * curve.height(t)), 2))
-    except ValueError:
-        pass  # the page says why there is no net
     for radius, height in points:
         at = corner + scale * complex(radius, -height)
         parts.append(f'<circle class="dot" cx="{at.real:.1f}" cy="{at.imag:.1f}" r="3.5"/>')
@@ -94,8 +87,7 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     """A `Report` on the net V, Q as the page shows it, angles in degrees: a dict of texts."""
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)
-    _, _, one, two = measure.vectors(V, Q)
-    medial = np.linalg.norm([one, two], axis=2)
+    medial = np.linalg.norm(measure.vectors(V, Q)[2:], axis=2)
     return {
         "quads": f"{about.quads:,}".replace(",", "\u2009"),
         "lam": f"{lam:.5g}",
@@ -113,17 +105,13 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
 
 
 def _svg(box, parts, words):
-    return (
-        f'<svg viewBox="0 0 {box[0]} {box[1]}" role="img" aria-label="{words}" '
-        f'xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
-    )
+    about = f'viewBox="0 0 {box[0]} {box[1]}" role="img" aria-label="{words}"'
+    return f'<svg {about} xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
 
 
 def _line(a, b, kind, width):
-    return (
-        f'<line class="{kind}" stroke-width="{width}" stroke-linecap="round" '
-        f'x1="{a.real:.1f}" y1="{a.imag:.1f}" x2="{b.real:.1f}" y2="{b.imag:.1f}"/>'
-    )
+    ends = f'x1="{a.real:.1f}" y1="{a.imag:.1f}" x2="{b.real:.1f}" y2="{b.imag:.1f}"'
+    return f'<line class="{kind}" stroke-width="{width}" stroke-linecap="round" {ends}/>'
 
 
 def _curve(points, width):

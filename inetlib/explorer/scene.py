@@ -7,13 +7,9 @@ from .. import view
 from . import look
 
 STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
-VIEWS = {  # azimuth and elevation of the viewer, degrees
-    "plane": (-90.0, 90.0),
-    "isothermal": (-50.0, 25.0),
-    "revolution": (-50.0, 25.0),
-    "freeform": (-60.0, 40.0),
-    "cover": (-60.0, 40.0),
-}
+VIEWS = {"plane": (-90.0, 90.0)}  # azimuth and elevation of the viewer, degrees
+VIEWS |= dict.fromkeys(("isothermal", "revolution"), (-50.0, 25.0))
+VIEWS |= dict.fromkeys(("freeform", "cover"), (-60.0, 40.0))
 
 
 class Scene:
@@ -61,19 +57,14 @@ class Scene:
             self.plotter.set_background(palette.background)
 
     def camera(self, V, azimuth, elevation, aspect=1.0):
-        """The camera (for vtk.js) that sees all of V, as near as it can.
-
-        azimuth, elevation: degrees; aspect: width / height of the window.
-        """
-        sight = tuple(np.radians([azimuth, elevation]))
-        view.aim(self.plotter.camera, V, sight, aspect)
+        """The camera (for vtk.js) that sees all of V, angles in degrees, aspect: width / height."""
+        view.aim(self.plotter.camera, V, tuple(np.radians([azimuth, elevation])), aspect)
         return self.plotter.camera
 
 
 def sight(kind: str, V: np.ndarray | None) -> tuple:
     """From where a net is seen by default: azimuth and elevation in degrees."""
-    flat = V is not None and not V[:, 2].any()
-    return VIEWS["plane" if flat else kind]
+    return VIEWS[kind if V is None or V[:, 2].any() else "plane"]
 
 
 def is_lost(V: np.ndarray, before: np.ndarray) -> bool:

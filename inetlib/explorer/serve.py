@@ -1,7 +1,6 @@
 """The way in: one local address, and for every browser tab an `app.App` of its own.
 
-Only this machine can connect, and only pages from this address: requests that name another
-host, or come from another site, are refused.  Nothing is read but the program's own pages.
+Only this machine can connect, and only pages from this address.
 """
 
 import asyncio
@@ -11,7 +10,6 @@ import signal
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 from urllib.parse import urlsplit
 
 from aiohttp import WSMsgType, web
@@ -29,9 +27,8 @@ os.environ.setdefault("TRAME_ARGS", "--server")  # trame must not read our comma
 class Door:
     """A web server on the loopback interface: an app for every tab.
 
-    surface, path: of a file, for every tab (see `session.Session`); nets: {key: (V, Q)} of nets
-    that are given, each at the address net/KEY/index.html; guarded: whether requests for other
-    hosts and from other sites are refused.
+    surface, path: as of `Session`; nets: {key: (V, Q)} of nets that are given, each at the address
+    net/KEY/index.html; guarded: whether requests for other hosts and from other sites are refused.
     """
 
     def __init__(self, surface=None, path=None, guarded=True):
@@ -40,10 +37,7 @@ class Door:
         self._runner = self._www = None
 
     async def open(self, port=None):
-        """Listen: the port.  port None: the usual one, or the next that is free; 0: any.
-
-        OSError when the port is taken.
-        """
+        """Listen: the port, or OSError.  None: the usual one, or the next that is free; 0: any."""
         application = web.Application(middlewares=[self._guard])
         pages = App("pages")
         pages.server.enable_module(vue3)
@@ -151,9 +145,7 @@ async def _up(request):
     raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
 
 
-def serve(
-    surface: Any = None, path: Any = None, port: int | None = None, ready: Callable = print
-) -> None:
+def serve(surface=None, path=None, port: int | None = None, ready: Callable = print) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
     surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`.

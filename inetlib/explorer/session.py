@@ -1,9 +1,9 @@
 """One explorer without a page: a choice, its net, what there is to say and to save."""
 
-import importlib.util
 import tempfile
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -12,13 +12,7 @@ from ..design import report
 from . import choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
-
-
-class Run:
-    """One search: the choice it is for, and whether somebody has asked it to stop."""
-
-    def __init__(self, choice):
-        self.choice, self.stopped = choice, False
+missing = io.missing
 
 
 class Session:
@@ -64,10 +58,7 @@ class Session:
             self._settle(None, None, nets.make)
 
     def _settle(self, run, then, make, *known):
-        """Show the net that is made, or say why there is none, unless a newer run has begun.
-
-        then: the run that is under way afterwards.  Collapsed faces are no net.
-        """
+        """Show the net made, or say why there is none; then: the run that is under way after it."""
         choice, problem = run.choice if run else self.choice, ""
         try:
             V, Q, message = make(choice, *known)
@@ -85,9 +76,9 @@ class Session:
             return True
 
     def begin(self):
-        """The `Run` of a new search, for `search`; an older one is asked to stop."""
+        """A new run, for `search`: its choice, and whether it shall stop, as an older one must."""
         self.stop()
-        self.run, self.steps = Run(self.choice), 0
+        self.run, self.steps = SimpleNamespace(choice=self.choice, stopped=False), 0
         return self.run
 
     def stop(self):
@@ -110,8 +101,7 @@ class Session:
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        words = f"step {self.steps}"
-        return self._settle(run, run, lambda _: (V, Q, words))
+        return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}"))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
@@ -120,8 +110,7 @@ class Session:
 
     def colours(self):
         """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
-        asked = np.radians([self.shown.theta, self.shown.theta0])
-        return look.shades(np.degrees(measure.deviations(self.V, self.Q, *asked)).max(axis=0))
+        return look.shades(np.abs(self.deviations()).max(axis=0))
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
@@ -132,8 +121,8 @@ class Session:
     def save(self, suffix, azimuth=-np.pi / 2, elevation=np.pi / 2):
         """The net as the bytes of a file: `.svg` or `.png`, a picture, else a mesh of `io`.
 
-        azimuth, elevation: of the viewer, radians, for pictures.  Nothing stays on the disk.
-        ValueError for other suffixes and where there is no net.
+        azimuth, elevation: of the viewer, radians, for pictures.  ValueError for other suffixes
+        and where there is no net.
         """
         if suffix not in SAVED:
             raise ValueError(f"{suffix}: one of {' '.join(SAVED)} is wanted")
@@ -147,9 +136,3 @@ class Session:
             path = Path(folder) / f"net{suffix}"
             io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
             return path.read_bytes()
-
-
-def missing(suffix: str) -> str:
-    """The package that a file with this suffix needs and that is not installed, or ""."""
-    package = io.PACKAGES.get(suffix, "")
-    return package if package and importlib.util.find_spec(package) is None else ""

@@ -1,14 +1,13 @@
 """Reading surfaces and nets from files, and writing nets for other programs.
 
-`FORMATS` says what is read and written.  Coordinates are kept bit by bit (GLB and STL have
-float32 and triangles only), and so is the order of vertices, faces and corners: the labels
-stay.  What is wrong with a file is a ValueError of one sentence that starts with its name; a
-missing package is an ImportError that says what to install.
+Coordinates are kept bit by bit (GLB and STL have float32 and triangles only), and so is the
+order of vertices, faces and corners.  What is wrong with a file is a ValueError of one sentence
+that starts with its name; a missing package is an ImportError that says what to install.
 """
 
 import importlib.util
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +19,7 @@ from . import binary, exchange, glb, text
 
 
 class Format(NamedTuple):
-    """How a kind of file is read and written, if at all; the extra of inetlib has the package."""
+    """How files are read and written, if at all; the package for it is in the extra of inetlib."""
 
     read: Callable | None = None
     write: Callable | None = None
@@ -73,7 +72,7 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
     """
     path = Path(path)
     known = _format(path, READERS, "read")
-    with _named(path), np.errstate(all="ignore"):
+    with named(path), np.errstate(all="ignore"):
         if not path.is_file():
             raise ValueError("a directory, no file" if path.is_dir() else "there is no such file")
         if not path.stat().st_size:
@@ -87,15 +86,14 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
 
 
 def surface(path: str | Path, merge: bool = True) -> Surface:
-    """The file's mesh as a reference surface of triangles, see `repair.manifold`.
+    """The file's mesh as a surface of triangles: `repair.manifold`, which `merge` is for.
 
-    With merge=False duplicate vertices stay: what was cut open on purpose stays open.
     ValueError as in `read`, and for what is no surface.
     """
     V, F = read(path)
     from ..repair import manifold
 
-    with _named(path):
+    with named(path):
         V, F, repaired = manifold(V, F, merge)
     if Path(path).suffix.lower() in SOUPS:
         repaired = ["corners of triangles at equal points were read as one vertex", *repaired]
@@ -103,11 +101,9 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
 
 
 def net(path: str | Path) -> Net:
-    """The file's mesh as a net, everything in the order of the file.
+    """The file's mesh as a net, with the order and the labels of the file.
 
-    Faces with three, five or more corners go to `polygons`.  ValueError as in `read`, when
-    no face is a quad, and when a face uses a vertex twice.  The labels are those of the file:
-    see `mesh.is_labelled`, `mesh.label`.
+    ValueError as in `read`, when no face is a quad, and when a face uses a vertex twice.
     """
     V, F = read(path)
     Q, others = F, []
@@ -116,7 +112,7 @@ def net(path: str | Path) -> Net:
         others = [np.array(face) for face in F if len(face) != 4]
     if not len(Q) or Q.shape[1] != 4:
         raise ValueError(f"{path} holds {'polygons' if others else 'triangles'}: quads are wanted")
-    with _named(path):
+    with named(path):
         return Net(*mesh.check_arrays(V, Q), others)
 
 
@@ -144,7 +140,7 @@ def _check_indices(indices, count, what):
 
 
 @contextmanager
-def _named(path):
+def named(path: str | Path) -> Iterator[None]:
     """ValueErrors inside get the file's name."""
     try:
         yield
@@ -158,11 +154,16 @@ def _format(path, suffixes, verb):
     if suffix not in suffixes:
         what = f"the suffix {path.suffix!r}" if suffix else "no suffix"
         raise ValueError(f"{path} has {what}: files to {verb} end with {' '.join(suffixes)}")
-    known = FORMATS[suffix]
-    if known.package and importlib.util.find_spec(known.package) is None:
-        what = f"{suffix[1:].upper()} files need the package {known.package}"
-        raise ImportError(f"{what}: pip install inetlib[{known.extra}]")
-    return known
+    if package := missing(suffix):
+        what = f"{suffix[1:].upper()} files need the package {package}"
+        raise ImportError(f"{what}: pip install inetlib[{FORMATS[suffix].extra}]")
+    return FORMATS[suffix]
+
+
+def missing(suffix: str) -> str:
+    """The package that a file with this suffix needs and that is not installed, or ""."""
+    package = PACKAGES.get(suffix, "")
+    return package if package and importlib.util.find_spec(package) is None else ""
 
 
 def check_output(path: str | Path, curves: bool = False, force: bool = False) -> Format:
@@ -195,31 +196,26 @@ def write(
     polygons: Sequence = (),
     force: bool = False,
 ) -> None:
-    """Write a net; the suffix of the path names the format.
+    """Write a net, all of it or nothing; the suffix of the path names the format.
 
-    V         (n, 3) vertices; float32 in GLB files by the format, else every bit is kept
-    Q         (f, 4) quads, or triangles (f, 3); GLB cuts quads along the shorter diagonal
-    curves    `mesh.Families` of vertex index arrays, "all" for mesh.polylines(Q), or None;
-              a family is a group of lines in OBJ, the number `family` in VTP, a mesh of
-              lines in GLB and a layer of polylines in DXF and 3DM
+    V         (n, 3) vertices
+    Q         (f, 4) quads, or triangles (f, 3)
+    curves    `mesh.Families` of vertex index arrays, "all" for mesh.polylines(Q), or None
     polygons  further faces: index arrays (k,)
     force     whether to replace an existing file
 
-    The file is complete or not there.  ValueError for unknown suffixes, directories, a missing
-    folder, curves in a format without them, and indices out of range; FileExistsError without
-    `force`; PermissionError; ImportError when the package for the format is missing.
+    ValueError for unknown suffixes, directories, a missing folder, curves in a format without
+    them, and indices out of range; FileExistsError without `force`; PermissionError;
+    ImportError when the package for the format is missing.
     """
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)
-    if curves is None:
-        curves = mesh.Families([], [], [], [])
-    elif isinstance(curves, str) and curves == "all":
+    if isinstance(curves, str) and curves == "all":
         curves = mesh.polylines(Q)
-    elif not isinstance(curves, mesh.Families):
+    if not isinstance(curves, mesh.Families | None):
         raise ValueError(f'curves are a {type(curves).__name__}: mesh.Families, "all" or None')
-    families = {name: family for name, family in curves._asdict().items() if family}
-    for name, family in families.items():
-        families[name] = [_row(curve, len(V), 2, "curve") for curve in family]
+    given = curves._asdict() if curves else {}
+    families = {k: [_row(c, len(V), 2, "curve") for c in x] for k, x in given.items() if x}
     polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
     known = check_output(path, bool(families), force)
     with files.replacing(path) as new:

@@ -1,5 +1,6 @@
 """PLY and STL: meshes as bytes (or as text; both formats come in two kinds)."""
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +29,7 @@ def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
         try:
             runs[name], at = _ply_runs(body, at, count, properties)
         except (ValueError, OverflowError):
-            what = f"the file ends early, or breaks off, in the element `{name}`"
-            raise ValueError(what) from None
+            raise ValueError(f"the file ends early or breaks off in the element `{name}`") from None
     if not (runs.get("vertex") and runs.get("face")):
         raise ValueError("the file has no faces: the elements `vertex` and `face` are wanted")
     key = "vertex_indices" if "vertex_indices" in runs["face"][0].dtype.names else "vertex_index"
@@ -69,19 +69,15 @@ def _ply_header(lines):
 
 
 def _ply_runs(body, at, count, properties):
-    """The rows of an element as structured arrays, one a run of equally long lists, and the end.
-
-    Runs are looked for in 1, 2, 4, ... rows: all lists are as long as in the first of them.
-    """
-    runs, most = [], 1
+    """The rows of an element as structured arrays, one a run of equally long lists, and the end."""
+    runs, most = [], 1  # rows to look at: 1, 2, 4, ..., while lists are as long as in the first
     while count and properties:
         fields, counts = [], []
         for name, kind, size in properties:
             length = 1
             if size:
+                length = int(np.frombuffer(body, size, 1, at + np.dtype(fields).itemsize)[0])
                 counts.append(f"count of {name}")
-                start = at + np.dtype(fields).itemsize
-                length = int(np.frombuffer(body, size, 1, start)[0])
                 fields.append((counts[-1], size))
             fields.append((name, kind, (length,)))
         fitting = max(1, (len(body) - at) // np.dtype(fields).itemsize)
@@ -96,12 +92,10 @@ def _ply_runs(body, at, count, properties):
 def write_ply(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a binary PLY file, coordinates as `double`; it has no place for curves here."""
     size = "uchar" if all(len(polygon) < 256 for polygon in polygons) else "int"
-    head = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(V)}\n"
-        "property double x\nproperty double y\nproperty double z\n"
-        f"element face {len(Q) + len(polygons)}\n"
-        f"property list {size} int vertex_indices\nend_header\n"
-    )
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(V)}\n"
+    head += "".join(f"property double {x}\n" for x in "xyz")
+    head += f"element face {len(Q) + len(polygons)}\n"
+    head += f"property list {size} int vertex_indices\nend_header\n"
     kind = "<" + PLY_TYPES[size]
     rows = np.empty(len(Q), dtype=[("count", kind), ("corners", "<i4", Q.shape[1:])])
     rows["count"], rows["corners"] = Q.shape[1], Q
@@ -120,19 +114,15 @@ def read_stl(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     elif data.lstrip()[:5].lower() == b"solid" and b"\0" not in data:
         corners = _stl_text(decoded(data).lower().splitlines())
     else:
-        raise ValueError(
-            f"no STL file, or a broken one: {len(data)} bytes, and a binary file "
-            f"of {count} triangles has {84 + 50 * count}"
-        )
+        size = f"{len(data)} bytes, and a binary file of {count} triangles has {84 + 50 * count}"
+        raise ValueError(f"no STL file, or a broken one: {size}")
     return corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3)
 
 
 def _stl_text(lines):
     rows = [line.split() for line in lines]
-    try:
+    with suppress(ValueError):
         points = np.array([row[1:4] for row in rows if row[:1] == ["vertex"]], dtype=np.float64)
         if any("".join(row).startswith("endsolid") for row in rows):
             return points.reshape(-1, 3, 3)
-    except ValueError:
-        pass
     raise ValueError("the STL text ends early or has a vertex without three coordinates")

@@ -1,7 +1,6 @@
-"""VTP, DXF and 3DM, by libraries made for them: pyvista (VTK), ezdxf, rhino3dm.
+"""VTP, DXF and 3DM, by libraries made for them, which keep float64 and quads.
 
-Each writer keeps float64 coordinates and quads.  The packages are imported when a file asks
-for them; `io` has looked whether they are there.
+They are imported when a file asks for them; `io` has looked whether they are there.
 """
 
 import re
@@ -33,9 +32,8 @@ def read_vtp(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     errors = done.stderr.decode(errors="replace")
     said = re.search(r"(?:ERR\|.*?\)|AssertionError): ([^\r\n\x1b]*)", errors)
     if said or done.returncode:
-        raise ValueError(
-            f"the VTP file is broken, says VTK{': ' + said[1].strip() if said else ''}"
-        )
+        reason = f": {said[1].strip()}" if said else ""
+        raise ValueError(f"the VTP file is broken, says VTK{reason}")
     points, padded, sizes = np.load(BytesIO(done.stdout)).values()  # sizes before the faces, too
     if len(set(sizes.tolist())) == 1:
         return points, padded.reshape(len(sizes), -1)[:, 1:]
@@ -62,13 +60,11 @@ def _colours(curves):
     from ..plot import COLOURS, GREY
 
     text = {"panels": GREY} | {name: COLOURS[name] for name in curves}
-    return {k: tuple(int(c[i : i + 2], 16) for i in (1, 3, 5)) for k, c in text.items()}
+    return {name: tuple(bytes.fromhex(colour[1:])) for name, colour in text.items()}
 
 
 def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a DXF file (R2010, no unit): layer `panels` with one MESH, and 3D polylines in
-    the layers `u`, `v`, `d1`, `d2`.
-    """
+    """Write a DXF file (R2010, no unit): a MESH in the layer `panels`, polylines in others."""
     import ezdxf
 
     drawing = ezdxf.new("R2010", units=0)
@@ -87,11 +83,9 @@ def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
 
 
 def write_3dm(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a Rhino file (version 7, no unit): layer `panels` with one mesh, its vertices in
-    double precision, and polylines in the layers `u`, `v`, `d1`, `d2`.
+    """Write a Rhino file (version 7, no unit): a mesh in the layer `panels`, polylines in others.
 
-    Rhino's meshes have triangles and quads only: a polygon becomes a mesh of its own, cut
-    into triangles.
+    Rhino's meshes have triangles and quads only: a polygon becomes a mesh of its own, of triangles.
     """
     import rhino3dm as rhino
 
@@ -103,13 +97,12 @@ def write_3dm(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
         layer, layers[name] = rhino.Layer(), rhino.ObjectAttributes()
         layer.Name, layer.Color = name, (*colour, 255)
         layers[name].LayerIndex = model.Layers.Add(layer)
-    corners = [np.arange(len(polygon)) for polygon in polygons]
-    pieces = [(V[p], triangulate(V[p], c[None])) for p, c in zip(polygons, corners, strict=True)]
+    pieces = [(V[p], triangulate(V[p], np.arange(len(p))[None])) for p in polygons]
     for W, F in [(V, Q), *pieces]:
         mesh = rhino.Mesh()
         mesh.Vertices.UseDoublePrecisionVertices = True
-        for x, y, z in W.tolist():
-            mesh.Vertices.AddPoint3d(x, y, z)
+        for point in W.tolist():
+            mesh.Vertices.AddPoint3d(*point)
         for face in F.tolist():
             mesh.Faces.AddFace(*face)
         mesh.Normals.ComputeNormals()
@@ -117,8 +110,8 @@ def write_3dm(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
     for name, family in curves.items():
         for curve in family:
             line = rhino.Polyline(len(curve))
-            for x, y, z in V[curve].tolist():
-                line.Add(x, y, z)
+            for point in V[curve].tolist():
+                line.Add(*point)
             model.Objects.AddPolyline(line, layers[name])
     if not model.Write(str(path), 7):
         raise OSError(f"rhino3dm could not write {path}")

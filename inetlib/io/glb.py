@@ -1,10 +1,11 @@
-"""GLB (binary glTF 2.0): scenes for the web, for phones and for slides; float32 by the format.
+"""GLB (binary glTF 2.0), float32 by the format.
 
 Read here and not by VTK, whose reader ends the process on some broken files.
 """
 
 import json
 import struct
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -26,15 +27,14 @@ def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
         scene = json.loads(data[20 : 20 + length])
         if needed := scene.get("extensionsRequired"):
             raise ValueError(f"it needs the extensions {needed}, which are not known here")
-        parts = list(_parts(scene, data[28 + length :], _roots(scene), np.eye(4)))
+        parts = [*_parts(scene, data[28 + length :], _roots(scene), np.eye(4))]
     except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
         raise ValueError(f"the GLB file is broken ({type(error).__name__}: {error})") from error
     if not parts:
         raise ValueError("the file has no faces")
     points, faces = zip(*parts, strict=True)
     shifts = np.cumsum([0, *map(len, points[:-1])])
-    faces = [corners + shift for corners, shift in zip(faces, shifts, strict=True)]
-    return np.concatenate(points) @ Y_UP, np.concatenate(faces)
+    return np.concatenate(points) @ Y_UP, np.concatenate([*map(np.add, faces, shifts)])
 
 
 def _roots(scene):
@@ -49,8 +49,7 @@ def _parts(scene, data, nodes, above):
     """(points, triangles) of every primitive below the nodes, moved to where the scene has it."""
     for node in (scene["nodes"][k] for k in nodes):
         place = above @ _matrix(node)
-        found = scene["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []
-        for part in found:
+        for part in scene["meshes"][node["mesh"]]["primitives"] if "mesh" in node else ():
             if part.get("mode", 4) > 4:
                 raise ValueError("it holds strips or fans of triangles")
             if part.get("mode", 4) == 4:
@@ -87,10 +86,7 @@ def _array(scene, data, number, width):
 
 
 def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a GLB scene: the mesh `panels` (triangles) and one mesh of lines a family of curves.
-
-    Coordinates are float32, y upwards: (x, y, z) is stored as (x, z, -y).
-    """
+    """Write a GLB scene: a mesh `panels` of triangles, one of lines a family; y is upwards."""
     from ..plot import COLOURS, PALE
     from ..repair import triangulate
 
@@ -112,27 +108,24 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
         "materials": [_material(name, (COLOURS | {"panels": PALE})[name]) for name in cells],
         "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],
         "bufferViews": [
-            {"buffer": 0, "byteOffset": start, "byteLength": block.nbytes}
-            for start, block in zip(starts[:-1], blocks, strict=True)
+            {"buffer": 0, "byteOffset": a, "byteLength": b - a} for a, b in pairwise(starts)
         ],
         "buffers": [{"byteLength": starts[-1]}],
     }
     words = json.dumps(scene).encode()
     words += b" " * (-len(words) % 4)
-    with open(path, "wb") as out:
-        out.write(struct.pack("<4sII", b"glTF", 2, 28 + len(words) + starts[-1]))
-        out.write(struct.pack("<I4s", len(words), b"JSON") + words)
-        out.write(struct.pack("<I4s", starts[-1], b"BIN\0"))
-        out.writelines(block.tobytes() for block in blocks)
+    head = struct.pack("<4s3I4s", b"glTF", 2, 28 + len(words) + starts[-1], len(words), b"JSON")
+    body = [struct.pack("<I4s", starts[-1], b"BIN\0"), *(block.tobytes() for block in blocks)]
+    path.write_bytes(b"".join([head, words, *body]))
 
 
 def _mesh(k, name):
-    part = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": k, "mode": 1}
-    return {"name": name, "primitives": [part | {"mode": 4 if k == 0 else 1}]}
+    part = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": k, "mode": 1 if k else 4}
+    return {"name": name, "primitives": [part]}
 
 
 def _material(name, colour):
-    srgb = np.array([int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)])
+    srgb = np.array(list(bytes.fromhex(colour[1:]))) / 255
     linear = [*(srgb**2.2).round(4).tolist(), 1.0]
     look = {"baseColorFactor": linear, "metallicFactor": 0.0, "roughnessFactor": 1.0}
     return {"name": name, "doubleSided": True, "pbrMetallicRoughness": look}

@@ -3,6 +3,7 @@
 Readers return points and faces as lists, counted from 0; their ValueErrors name the line.
 """
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -39,10 +40,7 @@ def _numbers(kind, words, count, number, what):
 
 
 def _check_face(face, given, count, first, number):
-    """ValueError unless the face has three corners or more, of `count` vertices.
-
-    given: the corners as the file has them, counted from `first`.
-    """
+    """ValueError for corners, `given` as the line counts them from `first`, that make no face."""
     if len(face) < 3:
         raise ValueError(f"line {number}: a face needs three corners, this one has {len(face)}")
     if not 0 <= min(face) <= max(face) < count:
@@ -52,12 +50,8 @@ def _check_face(face, given, count, first, number):
 
 
 def read_obj(path: Path) -> tuple[list, list]:
-    """Points (n lists of 3) and faces (lists of indices) of a Wavefront OBJ file.
-
-    Understands v/vt/vn corners, indices from the end (negative) and continued lines; colours
-    behind the coordinates, textures, normals, lines and groups are passed over.
-    """
-    points, faces, origins = [], [], []
+    """Points (n lists of 3) and faces (lists of indices) of an OBJ file, and nothing else of it."""
+    points, faces, lines = [], [], []
     for number, words in _rows(path):
         if words[0] == "v":
             points.append(_numbers(float, words[1:], 3, number, "point of three coordinates"))
@@ -65,35 +59,30 @@ def read_obj(path: Path) -> tuple[list, list]:
             corners = [word.partition("/")[0] for word in words[1:]]
             given = _numbers(int, corners, len(corners), number, "face")
             faces.append([k - 1 if k >= 0 else len(points) + k for k in given])
-            origins.append((number, given))
+            lines.append((number, given))
         elif not words[0][0].isalpha():
             raise ValueError(f"line {number}: {words[0][:40]!r} is no OBJ keyword")
-    for face, (number, given) in zip(faces, origins, strict=True):  # vertices may come later
+    for face, (number, given) in zip(faces, lines, strict=True):  # vertices may come later
         _check_face(face, given, len(points), 1, number)
     return points, faces
 
 
 def read_off(path: Path) -> tuple[list, list]:
     """Points (n lists of 3) and faces (lists of indices) of an OFF file; no colours."""
-    rows = list(_rows(path))
-    number, first = rows[0] if rows else (1, [""])
-    kind = first[0].upper()
-    if not kind.endswith("OFF") or not set(kind[:-3]) <= set("STCN") or "BINARY" in first:
-        raise ValueError(f"line {number}: a text OFF file starts with OFF, not {first[0][:40]!r}")
-    rows = [(number, first[1:])] * (len(first) > 1) + rows[1:]  # the counts may follow OFF
+    rows = [*_rows(path)] or [(1, [""])]
+    number, (kind, *words) = rows[0]
+    if not re.fullmatch("[STCN]*OFF", kind.upper()) or "BINARY" in words:
+        raise ValueError(f"line {number}: a text OFF file starts with OFF, not {kind[:40]!r}")
+    rows = [(number, words)] * bool(words) + rows[1:]  # the counts may follow OFF
     number, words = rows[0] if rows else (number, [])
     most = _numbers(int, words, 2, number, "pair of numbers, of vertices and faces")
     if min(most) < 0 or len(rows) < 1 + sum(most):
-        raise ValueError(
-            f"the file ends early: {most} vertices and faces are promised, "
-            f"and there are {len(rows) - 1} lines for them"
-        )
-    rows, below = rows[1 : 1 + most[0]], rows[1 + most[0] : 1 + sum(most)]
-    points = [
-        _numbers(float, words, 3, number, "point of three coordinates") for number, words in rows
-    ]
-    faces = []
-    for number, words in below:
+        words = f"{most} vertices and faces are promised, and there are {len(rows) - 1} lines"
+        raise ValueError(f"the file ends early: {words} for them")
+    points, faces = [], []
+    for number, words in rows[1 : 1 + most[0]]:
+        points.append(_numbers(float, words, 3, number, "point of three coordinates"))
+    for number, words in rows[1 + most[0] : 1 + sum(most)]:
         size = _numbers(int, words, 1, number, "face")[0]
         faces.append(_numbers(int, words[1:], size, number, f"face of {size} corners"))
         _check_face(faces[-1], faces[-1], len(points), 0, number)
@@ -102,12 +91,11 @@ def read_off(path: Path) -> tuple[list, list]:
 
 def write_obj(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write an OBJ file: the group `panels`, and each family of curves as a group of `l` lines."""
-    groups = {"panels": [*Q, *polygons], **curves}
     with open(path, "w", encoding="utf-8", newline="\n") as out:
         out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in V.tolist())
-        for name, lists in groups.items():
-            key = "f" if name == "panels" else "l"
+        for name, lists in {"panels": [*Q, *polygons], **curves}.items():
             out.write(f"g {name}\n")
+            key = "f" if name == "panels" else "l"
             out.writelines(f"{key} {_words(indices + 1)}\n" for indices in lists)
 
 
