@@ -6,8 +6,7 @@ The tasks are settings of Fig. 12 from `surfaces.freeform_patch`: E, theta = the
 degrees, where the paper's formulation is at its smallest, and B, mu = 1, in its general mode.
 Every case runs in a process of its own, so that its peak memory is its own too; seconds are
 medians over the repeats.  "x" columns: how many times faster than the paper's formulation
-with SciPy's spsolve.
-"""
+with SciPy's spsolve."""
 
 import argparse
 import json

@@ -3,8 +3,7 @@
 A net is two plain arrays: vertices `V` (n, 3) float64 and quads `Q` (f, 4) int64,
 counter-clockwise with v1 at the top left (see `inetlib.mesh`).  Angles are radians.
 
-Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
-"""
+Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms"."""
 
 from importlib import import_module
 

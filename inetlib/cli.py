@@ -1,8 +1,7 @@
 """The command line `inet`; angles are degrees on it, and radians from the parser on.
 
 Wrong input becomes one sentence, before the work begins and anything slow is loaded; files are
-written after all went well.
-"""
+written after all went well."""
 
 import argparse
 import contextlib

@@ -1,8 +1,7 @@
 """Sheared grids in the complex plane, their images, and which maps keep the ratios exact.
 
 Points of the plane are complex numbers; a grid is a complex array z (m+1, n+1) with u along
-the first axis and v along the second.
-"""
+the first axis and v along the second."""
 
 from collections.abc import Callable
 
@@ -43,8 +42,7 @@ def sheared_grid(
 
     kappa is f'''/f' of the map f that is to follow, where that is constant: 0 for z and z^2,
     1 for exp, -1 for sin and cos, c^2 for exp(cz).  The image of the grid then has both angles
-    exactly, at any size of the cells; the grid itself up to O(edge^2).  Paper: App. A.2, B3, B6.
-    """
+    exactly, at any size of the cells; the grid itself up to O(edge^2).  Paper: App. A.2, B3, B6."""
     shape = rho(*ratios(theta, theta0))
     m, n = check_whole("m", m), check_whole("n", n)
     u = check_positive("edge", edge) * unit(direction)
@@ -68,8 +66,7 @@ def quads(z: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 def complex_ratios(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(K, R) of every cell: d2 / d1 = lam exp(i theta) and m24 / m13 = exp(i theta0) / mu.
 
-    Paper: Eq. (11), Eq. (12) in complex form, B6.
-    """
+    Paper: Eq. (11), Eq. (12) in complex form, B6."""
     v1, v2, v3, v4 = z[:-1, 1:], z[:-1, :-1], z[1:, :-1], z[1:, 1:]
     d1, d2 = v3 - v1, v4 - v2
     return d2 / d1, (d2 - d1) / (d1 + d2)
@@ -101,8 +98,7 @@ def square_conic(point: Number, direction: Number) -> tuple[Number, ...]:
     """(A, B, C, D, E, F) of the parabola onto which z^2 takes a line; B^2 = 4 A C.
 
     A u^2 + B u v + C v^2 + D u + E v + F = 0 in w = u + iv; a doubled ray where the line meets 0.
-    Paper: App. A.2.
-    """
+    Paper: App. A.2."""
     a, b, h = _line(point, direction)
     s, t = a * a - b * b, 2 * a * b  # direction^2: the axis of the parabola
     # In z' = conj(direction) z = x + ih, z'^2 = x^2 - h^2 + 2ihx, so V^2 = 4 h^2 (U + h^2)
@@ -135,8 +131,7 @@ def _refine(z, samples):
 def moebius(M: ArrayLike, z: ArrayLike) -> np.ndarray:
     """(a z + b) / (c z + d) for the matrix M = [[a, b], [c, d]] and points z.
 
-    Products of matrices are compositions.  ValueError when det M = 0 or a point is the pole.
-    """
+    Products of matrices are compositions.  ValueError when det M = 0 or a point is the pole."""
     M = np.asarray(M, dtype=complex)
     if M.shape != (2, 2) or not np.isfinite(M).all():
         raise ValueError("M must be a 2 x 2 matrix of finite complex numbers")
@@ -184,8 +179,7 @@ def kappa(f: Number, z: Number) -> Number:
     """f'''/f' of a sympy expression f in the symbol z, simplified; ValueError for a constant f.
 
     Where it is a constant, and only there, the ratios of all images of congruent cells agree at
-    every mesh size: f is a + b z + c z^2 or a + b exp(gz) + c exp(-gz), kappa = g^2.  Paper: B6.
-    """
+    every mesh size: f is a + b z + c z^2 or a + b exp(gz) + c exp(-gz), kappa = g^2.  Paper: B6."""
     import sympy
 
     f = sympy.sympify(f)

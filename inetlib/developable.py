@@ -1,8 +1,7 @@
 """Isometric bending of planar nets: cylinders, cones, and the surface along any geodesic.
 
 A planar net is a complex array z, or a real one (..., 2); the maps return points (..., 3),
-keep lengths along the surface, and at their flat end leave the net in the plane z = 0.
-"""
+keep lengths along the surface, and at their flat end leave the net in the plane z = 0."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -29,8 +28,7 @@ class Curve(NamedTuple):
     """A regular curve by arc length, made by `arc_length`.
 
     position(t, k): the k-th derivative at the parameters t, (..., 2 or 3); integral(t): the arc
-    length from the start to t, a polynomial of numpy.
-    """
+    length from the start to t, a polynomial of numpy."""
 
     position: Callable
     integral: Chebyshev
@@ -58,8 +56,7 @@ class Curve(NamedTuple):
 def bezier(points: ArrayLike) -> Callable:
     """A Bezier curve as a function position(t, k=0): its k-th derivative at t in [0, 1].
 
-    points: (degree + 1, 2 or 3), at least two control points.
-    """
+    points: (degree + 1, 2 or 3), at least two control points."""
     from scipy.interpolate import BPoly
 
     control = np.asarray(points, dtype=float)
@@ -80,8 +77,7 @@ def arc_length(position: Callable, start: float = 0.0, stop: float = 1.0) -> Cur
     """A `Curve` from position(t, k), the k-th derivative of a curve on start <= t <= stop.
 
     Arc lengths are good to about 1e-13 of the length, by Chebyshev polynomials.  ValueError
-    when the curve stops on its way (a cusp).
-    """
+    when the curve stops on its way (a cusp)."""
     if not (np.isfinite([start, stop]).all() and start < stop):
         raise ValueError(f"the curve runs from {start} to {stop}: start < stop is wanted")
 
@@ -102,8 +98,7 @@ def roll_coordinates(x: np.ndarray, y: np.ndarray, curvature: float) -> tuple:
     """Coordinates (X, Y, Z) of the plane point (x, y) on a cylinder with rulings along y.
 
     X = sin(k x) / k, Y = y, Z = (1 - cos(k x)) / k for the curvature k, written so that k = 0
-    is the plane; numbers, arrays or sympy symbols.
-    """
+    is the plane; numbers, arrays or sympy symbols."""
 
     def sinc(t):
         xp = library(t)
@@ -117,8 +112,7 @@ def roll(z: np.ndarray, curvature: float, direction: complex = 1) -> np.ndarray:
     """A planar net rolled onto a rotational cylinder of radius 1 / |curvature|: (..., 3).
 
     direction: across the rulings, its length ignored.  The ruling through 0 stays where it is,
-    a negative curvature bends down, and a width of 2 pi / curvature closes.  Paper: Fig. 7.
-    """
+    a negative curvature bends down, and a width of 2 pi / curvature closes.  Paper: Fig. 7."""
     z, along = _complex(z), unit(direction)
     if not np.isfinite(curvature):
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")
@@ -130,8 +124,7 @@ def roll(z: np.ndarray, curvature: float, direction: complex = 1) -> np.ndarray:
 def cone_coordinates(distance: np.ndarray, angle: np.ndarray, gamma: float) -> tuple:
     """Coordinates (X, Y, Z) of a plane point in polar coordinates on a cone, apex at 0.
 
-    gamma: the angle between the rulings and the z-axis; numbers, arrays or sympy symbols.
-    """
+    gamma: the angle between the rulings and the z-axis; numbers, arrays or sympy symbols."""
     xp = library(distance, angle, gamma)
     narrow, lift = xp.sin(gamma), xp.sin(xp.pi / 2 - gamma)  # exactly 1 and 0 for pi/2
     turn = angle / narrow
@@ -144,8 +137,7 @@ def cone(z: np.ndarray, gamma: float, apex: complex = 0, direction: complex = 1)
     gamma: radians in (0, pi), between the rulings and the upward axis: pi/2 is the plane, less
     opens upwards; direction: of the ruling that keeps its vertical plane.  The sheet is slit
     opposite to it; with an angle of 2 pi sin(gamma) around the apex, the largest, it closes.
-    Paper: Fig. 7.
-    """
+    Paper: Fig. 7."""
     z, along, gamma = _complex(z), unit(direction), check_angle("gamma", gamma)
     if not np.isfinite(apex):
         raise ValueError(f"apex = {apex}: a finite complex number is wanted")
@@ -163,8 +155,7 @@ def cylinder(z: np.ndarray, directrix: Curve, direction: complex = 1) -> np.ndar
     """A planar net bent onto the general cylinder over a plane curve: (..., 3).
 
     x runs along `direction` from 0 to the length of the curve, whose two coordinates become
-    the horizontal and the vertical one.
-    """
+    the horizontal and the vertical one."""
     z, along = _complex(z), unit(direction)
     _require_dimension(directrix, 2)
     w = z * np.conj(along)
@@ -176,8 +167,7 @@ def darboux(curve: Curve, t: np.ndarray) -> tuple:
     """(cot psi, d cot psi / ds, T, B, kappa) at the parameters t of a space curve.
 
     The ruling cot(psi) T + B has the direction of the Darboux vector tau T + kappa B and makes
-    the angle psi with the tangent: cot psi = tau / kappa.
-    """
+    the angle psi with the tangent: cot psi = tau / kappa."""
     r1, r2, r3, r4 = (curve.position(t, k) for k in (1, 2, 3, 4))
     b = np.cross(r1, r2)
     speed, size = norm(r1, axis=-1), norm(b, axis=-1)
@@ -195,8 +185,7 @@ def rectifying(z: np.ndarray, curve: Curve) -> np.ndarray:
     The ruling at arc length s makes the angle psi(s) with the x-axis, so the point (x, y) lies
     on the one with x - s = y cot psi(s); y > 0 is the side of the binormal.  ValueError names
     the first point behind the edge of regression or beyond the last ruling, and a place where
-    the curvature vanishes.  Paper: Fig. 7.
-    """
+    the curvature vanishes.  Paper: Fig. 7."""
     z = _complex(z)
     _require_rulings(curve)
     t = _feet(curve, z.real, z.imag)
@@ -207,8 +196,7 @@ def rectifying(z: np.ndarray, curve: Curve) -> np.ndarray:
 def regression(curve: Curve, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The edge of regression at the arc lengths s: (plane points complex (...), points (..., 3)).
 
-    nan where neighbouring rulings are parallel, as on a cylinder.
-    """
+    nan where neighbouring rulings are parallel, as on a cylinder."""
     _require_rulings(curve)
     t = curve.parameter(s)
     cot, rate, T, B, _ = darboux(curve, t)
@@ -223,8 +211,7 @@ def _feet(curve, x, y):
 
     The vertical line through x meets the ruling of s at the height Y(s) = (x - s) / cot psi(s),
     and Y(x) = 0.  Walk from s = x, knot by knot, until Y passes y; where Y turns back before,
-    y psi' = sin(psi)^2 and the line has left the surface.
-    """
+    y psi' = sin(psi)^2 and the line has left the surface."""
     knots, start = np.linspace(curve.start, curve.stop, KNOTS), curve.parameter(x)
     s, (cot, rate, *_) = curve.integral(knots), darboux(curve, knots)
     slack, lean = SLACK * curve.length, y * darboux(curve, start)[0]
@@ -263,8 +250,7 @@ def tangent(bend: Callable, z: ArrayLike, direction: ArrayLike, step: float = 0.
     """The derivative of a map of the plane into space along a direction: (..., 3).
 
     bend: function of complex arrays; z, direction: complex, broadcasting.  Differences of
-    order step^8; the points z +- 4 step direction must lie on the surface.
-    """
+    order step^8; the points z +- 4 step direction must lie on the surface."""
     z, change = np.broadcast_arrays(np.asarray(z, dtype=complex), step * np.asarray(direction))
     weights = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}
     return sum(c * (bend(z + k * change) - bend(z - k * change)) for k, c in weights.items()) / step
@@ -284,8 +270,7 @@ def rolled_grid(
 
     As `conformal.sheared_grid`, with another step v: the chords of `roll(z, curvature)` have
     both angles exactly.  For the direction 1 and edge = 2 pi / (m curvature) the net closes.
-    ValueError when the edge is too long for such a face.
-    """
+    ValueError when the edge is too long for such a face."""
     lam, mu = ratios(theta, theta0)
     if not np.isfinite(curvature):
         raise ValueError(f"curvature = {curvature}: a finite number is wanted")

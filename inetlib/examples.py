@@ -68,8 +68,7 @@ def vertex(valence: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
 def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """A polygon whose corners have valence 3, in `rings` rings of `sides` quads: (V, Q, polygon).
 
-    u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0.  Paper: B9.
-    """
+    u runs around, v inwards: labelled for any number of sides >= 3.  V: z = 0.  Paper: B9."""
     sides, rings = check_whole("sides", sides, 3), check_whole("rings", rings)
     around, step = 2 * np.pi / sides * np.arange(sides), min(2 * np.pi / sides, 0.5)
     z = np.exp(1j * around[:, None] + step * np.arange(-rings, 1))
@@ -82,8 +81,7 @@ def polar_cap(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray]:
 def moebius_strip(length: int = 24, width: int = 3, reach: float = 0.45) -> tuple:
     """A strip of length x width quads around the unit circle, closed with half a twist: (V, Q).
 
-    reach is half the width.  No orientation exists.  Paper: B9.
-    """
+    reach is half the width.  No orientation exists.  Paper: B9."""
     length, width = check_whole("length", length, 5), check_whole("width", width)
     angle = 2 * np.pi * np.arange(length)[:, None] / length
     across = reach * np.linspace(-1, 1, width + 1)
@@ -103,8 +101,7 @@ def seam(Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(faces (f, 4), edges (k, 2)): Q with u and v named from face to face, and where they clash.
 
     The names start at face 0 and spread breadth first; the mesh can be labelled exactly when
-    there is no edge across which they disagree.  Paper: B9.
-    """
+    there is no edge across which they disagree.  Paper: B9."""
     Q = mesh.check_quads(Q).copy()
     start, end = np.array(mesh.half_edges(Q))
     across = {face: [] for face in range(len(Q))}

@@ -1,7 +1,6 @@
 """Files that appear whole or not at all: written beside their place as `.new-PID-...`, renamed.
 
-What a killed process has left is removed by the next that writes into the folder.
-"""
+What a killed process has left is removed by the next that writes into the folder."""
 
 import os
 import re

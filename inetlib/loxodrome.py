@@ -1,8 +1,7 @@
 """Webs of loxodromes and parallels on surfaces of revolution: smooth, as published, exact.
 
 A web has m quads around the axis.  Ring j lies at the meridian parameter t[j] and is turned by
-turn[j]; its vertices are (angle, parameter) = (i delta + turn[j], t[j]) with delta = 2 pi / m.
-"""
+turn[j]; its vertices are (angle, parameter) = (i delta + turn[j], t[j]) with delta = 2 pi / m."""
 
 from functools import partial
 from typing import NamedTuple
@@ -28,8 +27,7 @@ class Net(NamedTuple):
     families point arrays (k, 3): u parallels (closed), v, d1 and d2 loxodromes
     rows, t  number of rows of quads; the meridian parameters of the rings (rows + 1,)
     message  how many rows there are, and why no more
-    theta, theta0  the angles the net was made for, radians
-    """
+    theta, theta0  the angles the net was made for, radians"""
 
     V: np.ndarray
     Q: np.ndarray
@@ -46,8 +44,7 @@ def loxodrome(profile: Profile, theta0: float, angle: float = 0, samples: int = 
 
     From profile.start at the given angle around the axis (radians) to profile.stop: alpha =
     angle + cot theta0 * w, evenly spaced in the Mercator coordinate w = int ds / radius.
-    Paper: Eq. (15).
-    """
+    Paper: Eq. (15)."""
     theta0 = _angle("theta0", theta0)
     if not np.isfinite(angle):
         raise ValueError(f"angle = {angle}: a finite number is wanted")
@@ -75,8 +72,7 @@ def web(
            "smooth"  points of the smooth web, in closed form; angles off by O(1 / m^2)
            "paper"   the published algorithm, on the smooth loxodromes, with its own equation
                      for the next parallel, equation = "lam"; or the better "mu"
-    Paper: Alg. 1, Eq. (16), App. A.3, B4, B5.
-    """
+    Paper: Alg. 1, Eq. (16), App. A.3, B4, B5."""
     check_profile(profile)
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
     m = check_whole("m", m, 3)
@@ -137,8 +133,7 @@ def _march(profile, n, following, turn):
     """(t, turns, why): rings from profile.start up, n rows or as many as fit (n = None).
 
     following(t0): (t, None) of the next ring, or (None, why) when no row fits; turn(t0, t): how
-    much further it is turned; why: the reason to stop, in words.
-    """
+    much further it is turned; why: the reason to stop, in words."""
     t, turns, why = [profile.start], [0.0], None
     while why is None and (n is None or len(t) <= n):
         ended = profile.stop - t[-1] < FITS * (profile.stop - profile.start)
@@ -163,8 +158,7 @@ def residual(
     equation "lam": log(|A-D| / (lam |B-C|)), "mu": log(|m13| / (mu |m24|)), both between points
     of the smooth loxodromes; "exact": |m13|^2 - mu^2 |m24|^2 with the turn that makes the
     medial lines meet at theta0.  Draw it to see the two roots of "lam".
-    Paper: Eq. (16), Alg. 1, App. A.3.
-    """
+    Paper: Eq. (16), Alg. 1, App. A.3."""
     if equation == "exact":
         return _exact_ring(profile, theta, theta0, m)[2](t0, t)
     return _paper_ring(profile, theta, theta0, m, equation)[2](t0, t)
@@ -188,8 +182,7 @@ def _squares(profile, m, t0, t, turn):
 def _exact_ring(profile, theta, theta0, m):
     """(following, turn, off) of straight-edged quads with these angles, for two rings t0 and t.
 
-    off is positive at t = t0: its first sign change is the shortest row.
-    """
+    off is positive at t = t0: its first sign change is the shortest row."""
     mu, half = ratios(theta, theta0)[1], np.pi / m
     psi = np.arctan(np.cos(theta0) / mu * np.tan(half))  # half the turn for equal radii
     little = (profile.stop - profile.start) * 1e-5
@@ -252,8 +245,7 @@ def _paper_ring(profile, theta, theta0, m, equation):
     D is C turned by 2 pi / m, so the chord |C-D| is 2 r sin(pi / m) on every parallel: the
     first printed equation decides nothing (and names the arc 2 pi r / m instead).  Left is
     |A-D| = lam |B-C|, "lam", with two roots; the one on the smooth web's side of
-    |m13| = |m24| is taken.  "mu" is |m13| = mu |m24| instead.
-    """
+    |m13| = |m24| is taken.  "mu" is |m13| = mu |m24| instead."""
     if equation not in ("lam", "mu"):
         raise ValueError(f'equation = {equation!r}: "lam" or "mu" is wanted')
     lam, mu = ratios(theta, theta0)
@@ -305,8 +297,7 @@ def subnet(net: Net, first: str, second: str, mirror: bool = False) -> tuple:
     first, second: two of "u", "v", "d1", "d2"; the quads' u-edges follow `first`, their
     v-edges `second`.  ("d1", "d2") takes every other vertex and so needs an even m.
     mirror=True reflects the net in the meridian plane y = 0: theta stays and theta0 becomes
-    its supplement.  V keeps the vertices of the net, used or not.  Paper: Fig. 11.
-    """
+    its supplement.  V keeps the vertices of the net, used or not.  Paper: Fig. 11."""
     if first == second or not {first, second} <= set(AROUND):
         raise ValueError(f"{first!r}, {second!r}: two of u, v, d1, d2 are wanted")
     backwards = AROUND.index(first) > AROUND.index(second)
@@ -345,8 +336,7 @@ def closings(
     m and n go up to `limit`; at most `count` are listed, nearest by the larger deviation of
     the two angles, of equals that with the smaller m.  The smooth web closes with a shift of k
     quads exactly when X_v / X_u = (k + i m W / (2 pi)) / n, where W = 2 pi minor /
-    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.  Paper: B4.
-    """
+    sqrt(major^2 - minor^2) is the period of the Mercator coordinate.  Paper: B4."""
     wide = _torus_width(major, minor)
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
     limit, count = check_whole("limit", limit, 3), check_whole("count", count)
@@ -372,8 +362,7 @@ def torus_web(major: float, minor: float, m: int, n: int, shift: int) -> Net:
 
     n rows of m quads; going once around the tube every loxodrome ends `shift` quads further
     around the axis.  All quads have the same two angles, net.theta and net.theta0, near those
-    of the smooth web (see `closings`).  ValueError when no closed web is found.  Paper: B4.
-    """
+    of the smooth web (see `closings`).  ValueError when no closed web is found.  Paper: B4."""
     wide = _torus_width(major, minor)
     m, n = check_whole("m", m, 3), check_whole("n", n, 3)
     if shift % 1 != 0:

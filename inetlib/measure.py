@@ -1,8 +1,7 @@
 """The independent judge: ratios, angles and quality of a quad mesh, face by face.
 
 V (n, 3) and Q (f, 4) as in `mesh`; results have one entry a face, angles in radians.  Nothing
-here knows how a net was made or what it was made for.
-"""
+here knows how a net was made or what it was made for."""
 
 from typing import NamedTuple
 
@@ -48,8 +47,7 @@ def _angle(a, b):
 def ratios(V: ArrayLike, Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """(lam, mu) = (|d2| / |d1|, |m13| / |m24|) of every face; ValueError where one collapses.
 
-    Paper: Eq. (11), Eq. (12), Prop. 4, Def. 14.
-    """
+    Paper: Eq. (11), Eq. (12), Prop. 4, Def. 14."""
     _, (d1, d2, m13, m24) = _vectors_and_lengths(V, Q)
     return d2 / d1, m13 / m24
 
@@ -57,8 +55,7 @@ def ratios(V: ArrayLike, Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 def angles(V: ArrayLike, Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """(theta, theta0) of every face: angle(d1, d2) and angle(m13, m24); ValueError as `ratios`.
 
-    Paper: Def. 3, Prop. 13.
-    """
+    Paper: Def. 3, Prop. 13."""
     (d1, d2, m13, m24), _ = _vectors_and_lengths(V, Q)
     return _angle(d1, d2), _angle(m13, m24)
 
@@ -84,8 +81,7 @@ def web_angles(V: ArrayLike, Q: ArrayLike) -> WebAngles:
 def theta_defect(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
     """(d2^2 - d1^2 - 2 d1 . d2) / (d1^2 + d2^2): zero just where theta = theta0, lam = mu.
 
-    Paper: Eq. (13), Def. 5, Prop. 6.
-    """
+    Paper: Eq. (13), Def. 5, Prop. 6."""
     (d1, d2, _, _), _ = _vectors_and_lengths(V, Q)
     one, two = _dot(d1, d1), _dot(d2, d2)
     return (two - one - 2 * _dot(d1, d2)) / (one + two)
@@ -104,8 +100,7 @@ def star_angles(V: ArrayLike, Q: ArrayLike, unit: bool = False) -> Star:
 
     theta0 lies between the chords right - left and up - down, theta between those of the face
     corners opposite to the vertex; unit=True: chords of the unit vectors to these points.
-    Paper: Thm 12.
-    """
+    Paper: Thm 12."""
     V, Q = mesh.check_arrays(V, Q)
     face, slot = np.divmod(mesh.crossings(Q), 4)  # along u or against it
     vertex = Q[face, slot][:, 0]
@@ -212,8 +207,7 @@ def hausdorff(V: ArrayLike, Q: ArrayLike, W: ArrayLike, R: ArrayLike, refine: in
 
     The faces are cut into triangles, or are triangles.  Both are lower bounds of the distances
     of the surfaces, which need not be at a vertex; refine = k > 1 measures all points of a
-    lattice that divides the edges of the triangles into k parts.
-    """
+    lattice that divides the edges of the triangles into k parts."""
     refine = parallelogram.check_whole("refine", refine)
     one, two = mesh.triangles(V, Q), mesh.triangles(W, R)
     return Hausdorff(_farthest(*one, *two, refine), _farthest(*two, *one, refine))

@@ -10,8 +10,7 @@ The corners of every quad are labelled from the top left, u running along i and 
                     u
 
 A quarter turn of the labels turns both ratios into their reciprocals, so a mesh is usable
-only when all faces agree (`is_labelled`); a half turn changes nothing.
-"""
+only when all faces agree (`is_labelled`); a half turn changes nothing."""
 
 from itertools import combinations
 from typing import NamedTuple
@@ -29,8 +28,7 @@ def grid_quads(m: int, n: int) -> np.ndarray:
     """Quads (m n, 4) of a grid of (m+1)(n+1) vertices, vertex (i, j) numbered i (n+1) + j.
 
     >>> grid_quads(2, 1).tolist()
-    [[1, 0, 2, 3], [3, 2, 4, 5]]
-    """
+    [[1, 0, 2, 3], [3, 2, 4, 5]]"""
     m, n = check_whole("m", m), check_whole("n", n)
     i, j = np.meshgrid(np.arange(m), np.arange(n), indexing="ij")
     v2 = (i * (n + 1) + j).ravel()
@@ -41,8 +39,7 @@ def polygon_rings(sides: int, rings: int) -> tuple[np.ndarray, np.ndarray, np.nd
     """A polygon with 3 or more corners of valence 4, surrounded by rings of nearly square quads.
 
     Returns (V, Q, polygon): vertices in the plane z = 0, quads, labelled for even `sides`, and
-    the polygon's corners counter-clockwise.  Ring k has 2 sides k quads.
-    """
+    the polygon's corners counter-clockwise.  Ring k has 2 sides k quads."""
     sides, rings = check_whole("sides", sides, 3), check_whole("rings", rings)
     size = rings + 1  # one sector is a size x size lattice, the polygon's corner at (0, 0)
     lattice = np.arange(size) + 0.5
@@ -142,8 +139,7 @@ def twins(Q: ArrayLike) -> np.ndarray:
 def opposites(F: np.ndarray) -> np.ndarray:
     """The opposite half-edge of each half-edge, -1 on the boundary: int64, shape of F.ravel().
 
-    ValueError for non-manifold edges and for neighbouring faces of opposite orientation.
-    """
+    ValueError for non-manifold edges and for neighbouring faces of opposite orientation."""
     one, two = pairs(F).T
     start, sides = F.ravel(), F.shape[1]
     clash = np.flatnonzero(start[one] == start[two])
@@ -208,8 +204,7 @@ def crossings(Q: np.ndarray) -> np.ndarray:
 def two_colour(count: int, a: np.ndarray, b: np.ndarray, differ: np.ndarray) -> tuple:
     """Booleans x with x[a] xor x[b] = differ, and None; or (None, a loop that forbids it).
 
-    a, b (k,) of count nodes.  Solvable when the double cover i, i + count is disconnected.
-    """
+    a, b (k,) of count nodes.  Solvable when the double cover i, i + count is disconnected."""
     rows = np.concatenate([a, a + count])
     cols = np.concatenate([b + count * differ, b + count * ~differ])
     graph = coo_array((np.ones(rows.size, dtype=np.int8), (rows, cols)), shape=(2 * count,) * 2)
@@ -240,8 +235,7 @@ def label(Q: ArrayLike) -> np.ndarray:
     """The same faces, oriented alike and labelled alike; each component keeps its first face.
 
     ValueError names what forbids it: an odd interior vertex, a boundary loop with an odd sum of
-    (valence - 1), or a loop of faces.  Paper: B9.
-    """
+    (valence - 1), or a loop of faces.  Paper: B9."""
     Q = check_quads(Q).copy()
     one, two = pairs(Q).T
     start = Q.ravel()
@@ -285,8 +279,7 @@ class Families(NamedTuple):
 def polylines(Q: ArrayLike) -> Families:
     """The mesh curves along u-edges, v-edges, diagonals v1 v3 (Y_u) and diagonals v2 v4 (Y_v).
 
-    Q labelled, else ValueError.  They end at boundary and singular vertices.  Paper: Thm 8.
-    """
+    Q labelled, else ValueError.  They end at boundary and singular vertices.  Paper: Thm 8."""
     require_labels(Q)
     Q = check_quads(Q)
     return Families(*(chains(edges) for edges in (*_edges(Q), Q[:, ::2], Q[:, 1::2])))
@@ -375,8 +368,7 @@ def diagonal_meshes(Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The two diagonal meshes (Qa, Qb), on the vertices of a labelled mesh Q.
 
     The four neighbours of an interior vertex of valence 4 form a face, u along d1, v along d2.
-    On a chessboard colouring, ValueError without one, Qa has the colour of vertex Q[0, 0].
-    """
+    On a chessboard colouring, ValueError without one, Qa has the colour of vertex Q[0, 0]."""
     fan, Q = crossings(Q), check_quads(Q)
     start, end = half_edges(Q)
     colour, loop = two_colour(Q.max() + 1, start, end, np.ones(start.size, dtype=bool))

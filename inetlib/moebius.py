@@ -5,8 +5,7 @@ Lorentz product <X, Y> = X0 Y0 + ... + X3 Y3 - X4 Y4; multiples of X mean the sa
 Inversions, and all they generate, are then the 5 x 5 matrices M that keep this product:
 M2 @ M1 does M1 first, `numpy.linalg.inv(M)` undoes M.  Squared coordinates enter: keep the
 net near the origin and the radius of an inversion about as large as the distance of its
-centre, and 10 digits or more are right, there and back.
-"""
+centre, and 10 digits or more are right, there and back."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,8 +31,7 @@ def inversion(centre: ArrayLike = (0, 0, 0), radius: float = 1.0) -> np.ndarray:
     orientation.
 
     >>> apply(inversion(radius=2), [0, 0, 1])
-    array([0., 0., 4.])
-    """
+    array([0., 0., 4.])"""
     centre, radius = np.asarray(centre, dtype=float), check_positive("radius", radius)
     if centre.shape != (3,) or not np.isfinite(centre).all():
         raise ValueError(f"centre = {centre}: three finite coordinates are wanted")
@@ -45,8 +43,7 @@ def inversion(centre: ArrayLike = (0, 0, 0), radius: float = 1.0) -> np.ndarray:
 def check(M: np.ndarray) -> np.ndarray:
     """M as a float array, or a ValueError when it is not a 5 x 5 Lorentz matrix.
 
-    M^T J M = J with J = diag(1, 1, 1, 1, -1) must hold to 1e-9 of the largest entry squared.
-    """
+    M^T J M = J with J = diag(1, 1, 1, 1, -1) must hold to 1e-9 of the largest entry squared."""
     M = np.asarray(M, dtype=float)
     if M.shape != (5, 5) or not np.isfinite(M).all():
         raise ValueError(f"M has the shape {M.shape}: a 5 x 5 matrix of finite numbers is wanted")
@@ -61,8 +58,7 @@ def apply(M: np.ndarray, V: np.ndarray) -> np.ndarray:
     """The images (..., 3) of the points V (..., 3) under the 5 x 5 Lorentz matrix M.
 
     ValueError for a matrix that is not Lorentz, and for a vertex that goes to infinity.
-    Paper: Fig. 9.
-    """
+    Paper: Fig. 9."""
     M, X = check(M), lift(V)
     Y = X @ M.T
     weight = Y[..., 4] - Y[..., 3]
@@ -83,8 +79,7 @@ def image(M: np.ndarray, surface: Surface) -> Surface:
     """The image of a whole `surfaces.Surface` under M, again a Surface; numbers only.
 
     An isothermal parametrisation stays isothermal.  Points that go to infinity are an
-    error when they are asked for.  Paper: Fig. 9.
-    """
+    error when they are asked for.  Paper: Fig. 9."""
     M = check(M)
 
     def coordinates(u, v):
@@ -97,8 +92,7 @@ def stereographic(V: np.ndarray) -> np.ndarray:
     """The points V (..., 3) of the unit sphere, seen from (0, 0, 1) in the plane z = 0: complex.
 
     ValueError for a vertex off the sphere by more than 1e-9 and for the north pole itself.
-    Paper: Fig. 10.
-    """
+    Paper: Fig. 10."""
     x, y, z = np.moveaxis(_points(V), -1, 0)
     off = np.abs(np.sqrt(x * x + y * y + z * z) - 1) > 1e-9
     _refuse(off, "vertex{} does not lie on the unit sphere")
@@ -112,8 +106,7 @@ def stereographic(V: np.ndarray) -> np.ndarray:
 def sphere_points(z: np.ndarray) -> np.ndarray:
     """The points (..., 3) of the unit sphere over the complex numbers z: `stereographic` undone.
 
-    Paper: Fig. 10.
-    """
+    Paper: Fig. 10."""
     z = np.asarray(z, dtype=complex)
     _refuse(~np.isfinite(z), "point{} is not a finite number")
     square = np.abs(z) ** 2

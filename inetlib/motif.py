@@ -11,8 +11,7 @@ def place(V: np.ndarray, Q: np.ndarray, curves: list, lam: float, theta: float) 
 
     curves: a list of (k, 2) point arrays, drawn around 0 in the plane of the parallelogram
     with the half sides (1, 0) along d1 and lam (cos theta, sin theta) along d2, those of the
-    net (radians); elsewhere the copies are affine images.
-    """
+    net (radians); elsewhere the copies are affine images."""
     lam, theta = check_positive("lam", lam), check_angle("theta", theta)
     sides = np.array([[1.0, 0.0], [lam * np.cos(theta), lam * np.sin(theta)]])
     d1, d2, _, _ = measure.vectors(V, Q)

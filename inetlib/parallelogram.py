@@ -6,8 +6,7 @@
 
 Inside a quad, BC ~ d1 and BA ~ d2 are its diagonals, BD ~ m13 and CA ~ m24 its medial lines.
 Angles are radians.  Numbers out of range raise ValueError; sympy symbols go through the same
-formulas unchecked, so what runs is what the notebooks prove.
-"""
+formulas unchecked, so what runs is what the notebooks prove."""
 
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -57,8 +56,7 @@ def check_whole(name: str, value: float, least: int = 1) -> int:
 def area_factors(lam: Number, mu: Number) -> tuple:
     """Four factors with the product (2 (1 + mu^2) lam sin theta)^2, positive inside Eq. (4).
 
-    As in Heron's formula the product keeps its digits where 1 - cos^2 theta loses them.
-    """
+    As in Heron's formula the product keeps its digits where 1 - cos^2 theta loses them."""
     more, less = lam + 1, lam - 1
     return more + mu * less, more - mu * less, mu * more + less, mu * more - less
 
@@ -75,8 +73,7 @@ def _root_area(lam, mu):
 def lam_range(mu: Number) -> tuple[Number, Number]:
     """Open range of lam for a given mu, or of mu for a given lam; infinite above at 1.
 
-    Paper: Eq. (4), Eq. (6), Eq. (9).
-    """
+    Paper: Eq. (4), Eq. (6), Eq. (9)."""
     if library(mu) is not np:
         return abs(mu - 1) / (mu + 1), (mu + 1) / abs(mu - 1)
     mu = check_positive("mu", mu)
@@ -131,8 +128,7 @@ def cosines(lam: Number, mu: Number) -> tuple[Number, Number]:
     """(cos theta, cos theta0), rational in the ratios.
 
     An arccos of these loses half the digits near 0 and pi: see `angles`.
-    Paper: Eq. (3), Eq. (8), Lemma 1, Def. 10.
-    """
+    Paper: Eq. (3), Eq. (8), Lemma 1, Def. 10."""
     lam, mu = _require_admissible(lam, mu)
     cos_theta = (1 + lam**2) * (mu**2 - 1) / (2 * lam * (1 + mu**2))
     cos_theta0 = (1 + mu**2) * (lam**2 - 1) / (2 * mu * (1 + lam**2))
@@ -160,8 +156,7 @@ def half_cosines(lam: Number, mu: Number) -> tuple[Number, Number]:
 def half_angles(lam: Number, mu: Number) -> tuple[Number, Number]:
     """(alpha, beta): BD (m13) splits theta into alpha, next to d2, and beta, next to d1.
 
-    Paper: Eq. (5), Eq. (10), Lemma 1.
-    """
+    Paper: Eq. (5), Eq. (10), Lemma 1."""
     lam, mu = _require_admissible(lam, mu)
     xp, root = library(lam, mu), _root_area(lam, mu)
     along, across = 2 * mu**2 * (lam**2 + 1), (mu**2 + 1) * (lam - 1) * (lam + 1)
@@ -185,8 +180,7 @@ def ratios(theta: Number, theta0: Number) -> tuple[Number, Number]:
     >>> "{:.5f} {:.5f}".format(*ratios(np.pi / 3, np.pi / 4))
     '2.18890 1.48837'
 
-    Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1, B1.
-    """
+    Paper: Def. 2 and Eq. (8) for theta = theta0, else inverse of Lemma 1, B1."""
     log_lam, log_mu = log_ratios(theta, theta0)
     xp = library(log_lam, log_mu)
     return xp.exp(log_lam), xp.exp(log_mu)
@@ -214,8 +208,7 @@ def diagonal_ratio(rho: Number) -> Number:
     """Y_v / Y_u = (1 + rho) / (1 - rho) = lam exp(i theta); ValueError for rho = 1.
 
     An involution between s = Y_v / Y_u and r = 1 / rho: s = (r + 1) / (r - 1).
-    Paper: Thm 7 in complex form, B2.
-    """
+    Paper: Thm 7 in complex form, B2."""
     if library(rho) is np:
         rho = np.asarray(rho, dtype=complex)[()]
         if np.any(rho == 1):
@@ -280,8 +273,7 @@ def _oriented_area(a, b):
 def cross_ratio(a: Number, b: Number, c: Number, d: Number) -> Number:
     """(a, b; c, d) of four lines through a point, given by complex directions; -1: harmonic.
 
-    ValueError when a and d or b and c are parallel.  Paper: B10.
-    """
+    ValueError when a and d or b and c are parallel.  Paper: B10."""
     below = _oriented_area(a, d) * _oriented_area(b, c)
     if np.any(below == 0):
         raise ValueError("two of the lines coincide: the cross ratio is infinite")

@@ -2,8 +2,7 @@
 
 In complex numbers both ratios and both angles of a face are one equation,
 v4 - v2 = K (v3 - v1) with K = lam exp(i theta).  It is linear, so the nets on a mesh form a
-vector space, from which `planar_net` picks the smoothest or the closest.
-"""
+vector space, from which `planar_net` picks the smoothest or the closest."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -59,8 +58,7 @@ def planar_net(
 
     The equations hold to round-off.  Orientation is kept by them, but edges of a face may
     cross where too much is asked: see `faults`.  ValueError for bad input, for handles that no
-    net passes through and for nets that collapse.  Paper: B7.
-    """
+    net passes through and for nets that collapse.  Paper: B7."""
     K = factor_k(theta, theta0)
     Q = _checked(Q)
     count = int(Q.max()) + 1
@@ -180,8 +178,7 @@ def _closed(given):
 def _frame(places, rims, start, smooth):
     """Centre and size of all the points given, or a ValueError if they are not enough.
 
-    With these the numbers inside are about 1.
-    """
+    With these the numbers inside are about 1."""
     if not (np.isfinite(smooth) and smooth >= 0):
         raise ValueError(f"smooth = {smooth}: a number >= 0 is wanted")
     if len(places) < 2 and not rims and start is None:
@@ -285,8 +282,7 @@ def closest(z: np.ndarray, outline: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     """The points of a closed polyline closest to z, and its unit tangents there: complex (k,).
 
     At a corner the tangent is perpendicular to the way to z; of points equally close the one on
-    the first side is taken.  Paper: B7.
-    """
+    the first side is taken.  Paper: B7."""
     step = np.roll(outline, -1) - outline
     size = np.abs(outline - outline[0]).max()
     part = np.clip(((z[:, None] - outline) / step).real, 0, 1)
@@ -323,8 +319,7 @@ def faults(z: np.ndarray, Q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(flipped, wound): faces whose edges cross, interior vertices wound more than once.
 
     z: complex (n,).  Such a face has two corners of negative angle, such a vertex more than
-    2 pi of angles around it.  Paper: B7.
-    """
+    2 pi of angles around it.  Paper: B7."""
     corner = z[Q]
     angle = np.angle((np.roll(corner, 1, 1) - corner) / (np.roll(corner, -1, 1) - corner))
     around = np.bincount(Q.ravel(), (angle % (2 * np.pi)).ravel())

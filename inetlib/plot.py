@@ -1,7 +1,6 @@
 """Drawing with matplotlib: plane figures, and 3D by projected, depth-sorted polygons, no OpenGL.
 
-One colour a family (u, v, d1, d2) through all figures, of different lightness.
-"""
+One colour a family (u, v, d1, d2) through all figures, of different lightness."""
 
 from importlib.resources import files
 
@@ -102,8 +101,7 @@ def black_quads(ax, V: np.ndarray, Q: np.ndarray, fill=FILL, edge=INK, width=0.4
 def arc(apex, a, b, radius: float, samples: int = 40) -> np.ndarray:
     """Points on the arc around `apex` from the direction a to b, (samples, 2 or 3).
 
-    A right angle is drawn as a corner (3 points); ValueError where a and b are parallel.
-    """
+    A right angle is drawn as a corner (3 points); ValueError where a and b are parallel."""
     apex, a, b = (np.asarray(x, dtype=float) for x in (apex, a, b))
     if np.linalg.matrix_rank([a, b]) < 2:
         raise ValueError(f"the directions {a} and {b} are parallel: no arc between them")
@@ -139,8 +137,7 @@ def vector(ax, start, end, colour=INK, width=1.6, zorder=4):
 def camera(azimuth: float, elevation: float):
     """An orthographic camera: a function from points (..., 3) to (xy (..., 2), nearness (...)).
 
-    azimuth, elevation: radians, the direction from which the scene is seen; z points up.
-    """
+    azimuth, elevation: radians, the direction from which the scene is seen; z points up."""
     ca, sa, ce, se = np.cos(azimuth), np.sin(azimuth), np.cos(elevation), np.sin(elevation)
     right, up, towards = [-sa, ca, 0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]
 
@@ -177,8 +174,7 @@ def families(V, Q, widths):
 def cells(V, Q, white=False):
     """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
 
-    light: the corners left, or with `white` the white quads, and the corners left at the rim.
-    """
+    light: the corners left, or with `white` the white quads, and the corners left at the rim."""
     board = mesh.checkerboard(V, Q)
     black = board.black + len(V)
     corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)
@@ -200,8 +196,7 @@ def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
 
     view: a `camera`; V: (n, 3); faces: (f, k); fill: a colour or one a face, default `shade`;
     lines: (points (k, 3), colour, width) triples.  Their segments are sorted with the faces, and
-    lifted over those they lie on and by the fraction `lift` of the scene's depth.
-    """
+    lifted over those they lie on and by the fraction `lift` of the scene's depth."""
     xy, near = view(V)
     middle = near[faces].mean(axis=1)
     lifted = lift * (np.ptp(near) or 1) + (middle - near[faces].min(axis=1)).max()

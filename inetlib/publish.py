@@ -41,8 +41,7 @@ def save(drawing: Drawing, folder) -> dict:
 
     folder/NAME.svg, NAME.png, data/NAME.npz and the entry in manifest.json go together: where one
     differs by more than the tolerances of `same`, all are replaced.  When anything fails the old
-    files stay.  `folder` is made when only its last part is missing.
-    """
+    files stay.  `folder` is made when only its last part is missing."""
     folder = Path(folder)
     folder.mkdir(exist_ok=True)
     with files.scratch(folder) as fresh:
@@ -97,8 +96,7 @@ def differences(name: str, one, two) -> list:
     """What differs between the figure `name` in two folders by more than the tolerances of `same`.
 
     Words: "missing", "unreadable", or some of "manifest" (in `two` it has the hash of the data,
-    too), "data NAME" for each array, "svg" and "png".
-    """
+    too), "data NAME" for each array, "svg" and "png"."""
     svg, png, data = ([Path(x) / file for x in (one, two)] for file in _names(name))
     entries = [read_manifest(folder).get(name) for folder in (one, two)]
     if None in entries or not all(path.exists() for path in (*svg, *png, *data)):
@@ -124,8 +122,7 @@ def read_data(path) -> dict:
 def save_text(text: str, path):
     """Write a text file, never half of it, unless what is there says the same (see `same.text`).
 
-    Paper: Table 1.
-    """
+    Paper: Table 1."""
     path = Path(path)
     if not (path.exists() and same.text(path.read_text(encoding="utf-8"), text)):
         with files.replacing(path) as new:

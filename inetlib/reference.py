@@ -30,8 +30,7 @@ class Reference(NamedTuple):
 
     closest(points)   closest points and unit normals of the surface there, each (k, 3)
     boundary(points)  closest points on the boundary and an orthonormal frame e1, e2, e3
-                      there, each (k, 3): e1 along the boundary, e3 normal to the surface
-    """
+                      there, each (k, 3): e1 along the boundary, e3 normal to the surface"""
 
     closest: Callable
     diagonal: float  # of the bounding box
@@ -53,8 +52,7 @@ def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
     of the face where that degenerates.  So is e1 along the boundary, with the mesh on its left;
     at corners, where the boundary turns by more than 30 degrees, it is the direction of the
     segment hit (at the corner itself, of the one that leaves it).  ValueError for faces that
-    are no oriented manifold, and for triangles without area.
-    """
+    are no oriented manifold, and for triangles without area."""
     V, F = (a.copy() for a in triangles(V, F))  # later changes of V do not change the tree
     face, twin = repair.normals(V, F), opposites(F)
     repair.require_single_fans(V, F, twin)
@@ -188,8 +186,7 @@ def parametric(point: Callable, u: tuple, v: tuple, tangents: Callable | None = 
     the nearest may be hit.  The surface goes on for a tenth of the domain on all sides, if
     `point` does, else its last 0.15 % know their tangents to about 1e-6 only.  The normal at
     a pole is that of a point close by.  ValueError for an empty domain, and for points that are
-    not finite or make no surface.
-    """
+    not finite or make no surface."""
     for name, pair in (("u", u), ("v", v)):
         if np.shape(pair) != (2,) or not (np.isfinite(pair).all() and pair[0] < pair[1]):
             raise ValueError(f"{name} = {pair}: two finite numbers, the lower first, are wanted")

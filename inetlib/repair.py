@@ -29,8 +29,7 @@ def clean(V: np.ndarray, F: np.ndarray) -> Clean:
 
     Vertices at one place become one only where nothing else helps.  Triangles of a ring are
     halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
-    for what no step can repair, and for all but disks and rings.
-    """
+    for what no step can repair, and for all but disks and rings."""
     given = mesh.triangles(V, F)
     try:
         V, F, said = _oriented(*given)
@@ -47,8 +46,7 @@ def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     """Faces F of any sizes as an oriented manifold of triangles: (V, T (t, 3), sentences).
 
     With `merge`, vertices at one place become one where the surface stays a manifold.
-    ValueError, with vertices of V, for what no step can repair.
-    """
+    ValueError, with vertices of V, for what no step can repair."""
     T = triangulate(V, F)
     F = F.tolist() if isinstance(F, np.ndarray) else F
     first = {
@@ -95,8 +93,7 @@ def _counted(done):
 def merge(V: np.ndarray, F: np.ndarray, tolerance: float) -> tuple:
     """(faces F with the first of the vertices at each place only, how many others went).
 
-    tolerance: how far vertices at one place may be apart, in diagonals of the faces' box.
-    """
+    tolerance: how far vertices at one place may be apart, in diagonals of the faces' box."""
     used, corner = np.unique(F, return_inverse=True)
     points, place = np.unique(V[used] + 0.0, axis=0, return_inverse=True)  # -0.0 is 0.0
     radius = tolerance * np.linalg.norm(np.ptp(points, axis=0))
@@ -120,8 +117,7 @@ def drop(T: np.ndarray) -> tuple:
 def orient(T: np.ndarray) -> tuple:
     """(triangles oriented alike, how many were turned): the more frequent side of a piece wins.
 
-    ValueError for edges of more than two triangles and for one-sided surfaces.
-    """
+    ValueError for edges of more than two triangles and for one-sided surfaces."""
     one, two = mesh.pairs(T).T
     clash = T.ravel()[one] == T.ravel()[two]
     turn, loop = mesh.two_colour(len(T), one // 3, two // 3, clash)
@@ -209,8 +205,7 @@ def weld(V: np.ndarray, F: np.ndarray) -> tuple:
 def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
     """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
-    Quads are cut along the shorter diagonal, polygons ear by ear: ValueError where none is left.
-    """
+    Quads are cut along the shorter diagonal, polygons ear by ear: ValueError where none is left."""
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]
     faces = [[k for k, one in zip(f, [f[-1], *f[:-1]], strict=True) if k != one] for f in F]

@@ -1,7 +1,6 @@
 """What counts as the same: texts, numbers, arrays, drawings and pictures, within tolerances.
 
-The last digits of computed numbers differ from one processor to the next.
-"""
+The last digits of computed numbers differ from one processor to the next."""
 
 import io
 import re
@@ -26,8 +25,7 @@ ROUNDED = re.compile(r'(\b(?:d|x|y|width|height|points)="|translate\()([^")]*)')
 def text(one: str, two: str) -> bool:
     """Whether two texts are equal, decimals within one unit of their last digits.
 
-    0.25 and 0.26 are the same, 0.25 and 0.27 are not, nor are 7 and 8: whole numbers are words.
-    """
+    0.25 and 0.26 are the same, 0.25 and 0.27 are not, nor are 7 and 8: whole numbers are words."""
     numbers = NUMBER.findall(one), NUMBER.findall(two)
     return NUMBER.split(one) == NUMBER.split(two) and all(map(_near, *numbers))
 

@@ -1,7 +1,6 @@
 """The way in of `inet` as a process of its own: Ctrl-C ends it at any moment, with a sentence.
 
-Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks.
-"""
+Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded and in callbacks."""
 
 import os
 import signal
@@ -30,8 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
 def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
     """From now on Ctrl-C and SIGTERM end this process: 128 + the signal's number, 130 for Ctrl-C.
 
-    sentence() is said on stderr; fresh: on a new line.  A signal that was ignored stays so.
-    """
+    sentence() is said on stderr; fresh: on a new line.  A signal that was ignored stays so."""
 
     def stop(number, frame):
         for other in SIGNALS:

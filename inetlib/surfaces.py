@@ -28,8 +28,7 @@ def darboux(matrix: Callable, generatrix: Callable, shift: Callable) -> Surface:
     """The surface A(v) X(u) + a(v) of a curve under a rigid motion.
 
     matrix(v): three rows of three entries, orthogonal (not checked); generatrix(u) and
-    shift(v): triples.
-    """
+    shift(v): triples."""
 
     def coordinates(u, v):
         X, rows = generatrix(u), zip(matrix(v), shift(v), strict=True)
@@ -60,8 +59,7 @@ def helical(generatrix: Callable, pitch: float) -> Surface:
 def rotational(generatrix: Callable) -> Surface:
     """The surface swept by a curve that turns about the z-axis by the angle v.
 
-    Paper: Sec. 5 (rotational surfaces), Eq. (14).
-    """
+    Paper: Sec. 5 (rotational surfaces), Eq. (14)."""
     return helical(generatrix, 0)._replace(name="rotational surface")
 
 
@@ -69,8 +67,7 @@ def tangents(surface: Surface, u: ArrayLike, v: ArrayLike, step: float = 0.01) -
     """(X_u, X_v), arrays (3, ...): expressions for sympy symbols (exact, not simplified).
 
     Numbers: by differences, accurate to about 1e-13, second derivatives to 1e-11, where the
-    surface is smooth on +-6 steps around (u, v).
-    """
+    surface is smooth on +-6 steps around (u, v)."""
     xp = library(u, v)
     if xp is not np:
         X = surface.coordinates(u, v)
@@ -144,8 +141,7 @@ def conjugate(t: float) -> Surface:
 class Profile(NamedTuple):
     """A meridian: radius(t) > 0 and height(t) on start <= t <= stop, callables of arrays.
 
-    t is any regular parameter (radius' and height' never vanish together).
-    """
+    t is any regular parameter (radius' and height' never vanish together)."""
 
     radius: Callable
     height: Callable
@@ -197,8 +193,7 @@ def spline_profile(points: ArrayLike) -> Profile:
     """The cubic spline through sampled points of a meridian, by their chord length.
 
     points: (k, 2), radius and height, k >= 2, no two neighbours equal, else ValueError;
-    two or three points give a line or a parabola.
-    """
+    two or three points give a line or a parabola."""
     from scipy.interpolate import make_interp_spline
 
     rows = np.asarray(points, dtype=float)
@@ -218,8 +213,7 @@ def check_profile(profile: Profile) -> Profile:
     """The profile itself, or a ValueError that says what is wrong with it.
 
     Refused: an empty interval, a radius that is not positive, values that are not finite, a
-    meridian that stands still, turns back or has a corner sharper than 90 degrees.
-    """
+    meridian that stands still, turns back or has a corner sharper than 90 degrees."""
     radius, height, start, stop = profile
     if not (np.isfinite([start, stop]).all() and start < stop):
         raise ValueError(f"the profile runs from {start} to {stop}: start < stop wanted")
@@ -245,8 +239,7 @@ def slope(profile: Profile, t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """(radius'(t), height'(t)) on [start, stop], arrays of the shape of t.
 
     By the method `derivative` of callables that have one (scipy's splines); else by finite
-    differences of order 8 that stay inside the profile, about 1e-10 relative.
-    """
+    differences of order 8 that stay inside the profile, about 1e-10 relative."""
     from scipy.differentiate import derivative
 
     at, reach = np.asarray(t, dtype=float), (profile.stop - profile.start) / 20
@@ -264,8 +257,7 @@ def slope(profile: Profile, t: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
 def revolve(profile: Profile, angle: ArrayLike, t: ArrayLike) -> np.ndarray:
     """Points (..., 3) of the surface of revolution at the angle and the meridian parameter t.
 
-    Paper: Eq. (14).
-    """
+    Paper: Eq. (14)."""
     radius, height = profile.radius(t), profile.height(t)
     points = radius * np.cos(angle), radius * np.sin(angle), height + 0 * np.asarray(angle)
     return np.stack(np.broadcast_arrays(*points), axis=-1)
@@ -276,8 +268,7 @@ def mercator(profile: Profile) -> tuple[Callable, Callable]:
 
     w(t) = int ds / radius from profile.start; both take arrays, and t_of_w stays on the
     profile.  (angle, w) is isothermal on the surface of revolution.  About 1e-12 for smooth
-    callables, 1e-9 for cubic splines.  ValueError as in `check_profile`.  Paper: B4.
-    """
+    callables, 1e-9 for cubic splines.  ValueError as in `check_profile`.  Paper: B4."""
     check_profile(profile)
 
     def rate(t):
@@ -315,8 +306,7 @@ def helical_isothermal(profile: Profile, pitch: float) -> tuple[Surface, float]:
     """The helical surface of a meridian in isothermal parameters: (Surface, w_stop).
 
     It takes numbers or arrays (x, w), any angle x and 0 <= w <= w_stop.  With E, F, G of the
-    meridian and the helices, w = int sqrt(EG - F^2) / E dt and x = angle + int F / E dt.
-    """
+    meridian and the helices, w = int sqrt(EG - F^2) / E dt and x = angle + int F / E dt."""
     check_profile(profile)
 
     def rates(t):
@@ -342,8 +332,7 @@ def freeform_patch(m: int = 20, n: int = 20) -> tuple[np.ndarray, np.ndarray]:
     """A roof with a dome, a saddle and curved boundaries as a mesh (V, Q), m x n quads.
 
     V: ((m+1)(n+1), 3), its bounding box has the diagonal 1 and its centre at 0; Q as in
-    `mesh.grid_quads`.  Every isogonal net on it has to be found.  Paper: Fig. 12.
-    """
+    `mesh.grid_quads`.  Every isogonal net on it has to be found.  Paper: Fig. 12."""
     Q = grid_quads(m, n)
     u, v = np.meshgrid(np.linspace(-1, 1, m + 1), np.linspace(-1, 1, n + 1), indexing="ij")
     x = 1.25 * u + 0.38 * v + 0.08 * np.sin(2 * v)

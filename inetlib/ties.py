@@ -1,7 +1,6 @@
 """Comparisons of computed numbers that may tie: equal ones are decided by index.
 
-Numbers that are equal by symmetry differ in their last digits, on each processor in others.
-"""
+Numbers that are equal by symmetry differ in their last digits, on each processor in others."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,8 +19,7 @@ def first_largest(values: ArrayLike, scale: float = 0.0) -> int:
     scale: a size beside which the numbers are rounded, where they may all be zero.
 
     >>> first_largest([1.0, 3.0 - 1e-15, 3.0])
-    1
-    """
+    1"""
     values = np.asarray(values)
     return int(np.argmax(at_most(values.max(), values + TIE * scale)))
 

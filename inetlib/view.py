@@ -47,8 +47,7 @@ def headless() -> bool:
 def available() -> tuple[bool, str]:
     """(True, a sentence) when pyvista can draw off screen here, else (False, what is missing).
 
-    It is tried once, in a process of its own: without OpenGL, VTK may end the process.
-    """
+    It is tried once, in a process of its own: without OpenGL, VTK may end the process."""
     try:
         pyvista_module()
         done = subprocess.run([sys.executable, "-c", PROBE], capture_output=True, timeout=120)
@@ -68,8 +67,7 @@ def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), liv
     default `mesh.polylines(Q)`.  colours: {"face": ..., "u": ...}, where they differ from
     COLOURS.  width: of a tube, as a part of the bounding box's diagonal.  view: azimuth and
     elevation (radians) of the viewer.  live: whether for a window.  ImportError without
-    pyvista, RuntimeError without OpenGL.
-    """
+    pyvista, RuntimeError without OpenGL."""
     pyvista = pyvista_module()
     V, Q = mesh.check_arrays(V, Q)
     if not available()[0]:

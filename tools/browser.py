@@ -2,8 +2,7 @@
 
     python tools/browser.py
 
-Prints where it is, or why there is none: the tests then say that they were skipped.
-"""
+Prints where it is, or why there is none: the tests then say that they were skipped."""
 
 import os
 import shutil

@@ -1,7 +1,6 @@
 """Write environment.yml, for conda, from pyproject.toml: the one place for dependencies.
 
-python tools/environment.py
-"""
+python tools/environment.py"""
 
 import tomllib
 from pathlib import Path

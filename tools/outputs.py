@@ -3,8 +3,7 @@
 Text may differ by one unit of the last digit it shows, pictures by a little antialiasing (see
 `inetlib.same`).  Two tags of a cell say that more may differ, and why:
   timing   seconds differ from run to run: what is stored stays
-  view     OpenGL draws otherwise on every graphics card: pictures need only look alike
-"""
+  view     OpenGL draws otherwise on every graphics card: pictures need only look alike"""
 
 import base64
 import os
@@ -42,8 +41,7 @@ def tags(cell):
 def kept(stored, fresh, looks=(same.LEVELS, same.MEAN)):
     """Whether the outputs of the stored cell can stay, in the light of a fresh run of it.
 
-    looks: levels and mean, see `same.picture`.
-    """
+    looks: levels and mean, see `same.picture`."""
     if "timing" in tags(fresh) and stored.outputs:
         return True
     if "view" in tags(fresh) and stored.outputs and not view.available()[0]:

@@ -6,8 +6,7 @@
 A notebook is stored only when it ran to its end and shows something else than before; what
 differs by the last digits of this machine is kept (see outputs.py), and so are figures (see
 `inetlib.publish`).  The table at the end shows, for each figure, the largest deviation of theta
-and theta0 over all its faces, and whether it was kept.
-"""
+and theta0 over all its faces, and whether it was kept."""
 
 import sys
 

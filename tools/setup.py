@@ -5,8 +5,7 @@
     python tools/setup.py --versions newest  make .venv-newest, whatever is newest today
     python tools/setup.py --remove           remove all of them
 
-Needs Python >= 3.11 and the network; nothing outside these folders changes.
-"""
+Needs Python >= 3.11 and the network; nothing outside these folders changes."""
 
 import argparse
 import os

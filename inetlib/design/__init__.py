@@ -1,8 +1,7 @@
 """A surface in, an isogonal net out: flattened conformally, covered by a sheared grid, lifted.
 
 Every conformal map of a sheared grid is nearly an isogonal net for every pair of angles, so
-the optimisation that follows moves the vertices only a little along the surface.
-"""
+the optimisation that follows moves the vertices only a little along the surface."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -34,8 +33,7 @@ class Cover(NamedTuple):
     >>> from inetlib import examples
     >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
     >>> net.report.converged, net.report.flips, round(float(np.degrees(net.report.theta.mean)), 6)
-    (True, 0, 70.0)
-    """
+    (True, 0, 70.0)"""
 
     V: np.ndarray
     Q: np.ndarray
@@ -72,8 +70,7 @@ def cover(
     quads only and leaves less than a quad's width free at the boundary.  Over a ring it closes,
     with the nearest size and direction for which it can.  ValueError for input that cannot be
     covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
-    off is returned, not raised.
-    """
+    off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
     if size is None:

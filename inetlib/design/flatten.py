@@ -1,8 +1,7 @@
 """Conformal maps of disks and rings of triangles to the plane, as complex numbers.
 
 Plain: the spectral relative of LSCM for disks; a ring becomes a strip between parallel lines,
-its banks a period apart.  Even: a constant scale along the boundary, the least varying of all.
-"""
+its banks a period apart.  Even: a constant scale along the boundary, the least varying of all."""
 
 from typing import NamedTuple
 
@@ -41,8 +40,7 @@ def flatten(V: np.ndarray, F: np.ndarray, loops: list, boundary: str = "even") -
 
     The real axis is the longest direction of a disk, and runs around the hole of a ring.
     boundary: "even" or "plain"; where the even map would overlap itself or flip triangles,
-    the plain one is taken.  ValueError if that overlaps itself, too.
-    """
+    the plain one is taken.  ValueError if that overlaps itself, too."""
     if boundary not in ("even", "plain"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
     disk = len(loops) == 1
@@ -138,8 +136,7 @@ def _even(V, F, loops, flat, energy):
     """The map whose boundary edges have lengths in proportion to those of the surface.
 
     In steps the edges keep their directions and get the wanted lengths as targets; the sum of
-    the conformal energy and the squared distances from the targets becomes the least.
-    """
+    the conformal energy and the squared distances from the targets becomes the least."""
     count, k, origin = len(V), len(flat.z), flat.origin
     z = flat.z[np.unique(origin, return_index=True)[1]]
     banks = flat.z - z[origin]  # 0, or the period on one side of the cut

@@ -58,8 +58,7 @@ def cover(
     """The `Layer` of about `count` quads, or of edges of mean length `size`, over a `Domain`.
 
     direction: of the u-lines against the real axis, radians.  Over a ring size and direction
-    change as little as it takes to close.  ValueError if not one whole quad fits inside.
-    """
+    change as little as it takes to close.  ValueError if not one whole quad fits inside."""
     lam, mu = parallelogram.ratios(theta, theta0)
     rho, turn = parallelogram.rho(lam, mu), np.exp(1j * direction)
     if size is None:

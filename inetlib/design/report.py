@@ -17,8 +17,7 @@ class Report(NamedTuple):
     """The numbers of a net; angles in radians, lengths in the unit of V.
 
     Deviations are from what was asked for, or from the mean.  What comes from `converged` on is
-    None unless the net covers a surface (`design.cover`); its bounding box gives the diagonal.
-    """
+    None unless the net covers a surface (`design.cover`); its bounding box gives the diagonal."""
 
     vertices: int  # those of faces only
     quads: int
@@ -69,8 +68,7 @@ def report(
     """The `Report` of a labelled net V (n, 3), Q (f, 4).
 
     polygons: faces that are no quads; lam, mu, theta, theta0 (radians): what was asked for.
-    ValueError where a face has collapsed.
-    """
+    ValueError where a face has collapsed."""
     wanted = dict(zip(NAMES, (lam, mu, theta, theta0), strict=True))
     values = *measure.ratios(V, Q), *measure.angles(V, Q)
     spreads = map(measure.spread, values, wanted.values())
@@ -80,7 +78,8 @@ def report(
     shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
     counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
-    return Report(*counts, wanted, *spreads, *shape, *sizes)
+    known = (*counts, wanted, *spreads, *shape, *sizes)
+    return Report(*known)
 
 
 def survey(

@@ -12,8 +12,7 @@ def drawn(*degrees):
     """A decorator for `draw` of a module: what it returns, (figure, data, nets, claims), as a
     `publish.Drawing` of the module's name, with those arguments of the call that are numbers.
 
-    degrees: names of angles that are radians in the call, and noted in degrees.
-    """
+    degrees: names of angles that are radians in the call, and noted in degrees."""
 
     def decorate(draw):
         signature, module = inspect.signature(draw), draw.__module__

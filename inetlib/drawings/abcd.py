@@ -2,8 +2,7 @@
 
   A ---------- D      B = 0 and C = 1, so a = |BC| = 1 and b = |AB| = lam
  /            /       angle B = theta, the diagonals meet at O with
-B ---------- C        angle AOD = theta0
-"""
+B ---------- C        angle AOD = theta0"""
 
 import numpy as np
 
@@ -20,8 +19,7 @@ def corners(theta, theta0):
 def net(shape, theta, theta0):
     """(V, Q, theta, theta0) of a quad whose mid-edge parallelogram is similar to ABCD.
 
-    Its diagonals are BC and BA, so that `measure` finds the angles of ABCD in it.
-    """
+    Its diagonals are BC and BA, so that `measure` finds the angles of ABCD in it."""
     d1, d2 = shape[2] - shape[1], shape[0] - shape[1]
     return *conformal.quads(np.array([[-d2, -d1], [d1, d2]]) / 2), theta, theta0
 

@@ -32,8 +32,7 @@ def curves(m=CELLS):
 def vault(m=CELLS):
     """A roof that a half turn about the vertical axis takes to itself: (V, Q), m x m quads.
 
-    Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.  Paper: B8.
-    """
+    Vertex k goes to vertex -1 - k.  The bounding box has the diagonal 1.  Paper: B8."""
     u, v = np.meshgrid(*2 * [np.linspace(-1, 1, m + 1)], indexing="ij")
     x, y = 1.1 * u + 0.3 * v, v - 0.15 * u + 0.1 * u**3
     z = 0.35 * np.cos(1.6 * u + 0.6 * v) - 0.25 * v**2
@@ -63,8 +62,7 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=
 
     theta, theta0: radians; azimuth, elevation: the camera, radians.  Black: the vertices
     that stay; grey: the boundary of the start.  The parallelograms of (F) have the colour
-    of their deviation.  Paper: B8.
-    """
+    of their deviation.  Paper: B8."""
     figure, axes = plot.canvas([list("ABC"), list("DEF")], 7.4, 4.4)
     view = plot.camera(azimuth, elevation)
     found, stay = nets(theta, theta0), curves()

@@ -34,8 +34,7 @@ def gallery():
 def verdict(Q):
     """ "labelled", or the first words of the reason why `mesh.label` refuses the faces.
 
-    Paper: B9.
-    """
+    Paper: B9."""
     try:
         mesh.label(Q)
     except ValueError as error:
@@ -50,8 +49,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
     """Two nets in space: {"D": (V, Q, polygon, `solver.Result`), "E"}; V is the start.
 
     D: an octagon with corners of valence 4 in six rings; E: a polar cap of 20 sides.  Both
-    start from domes.  theta, theta0: radians.  Paper: B9.
-    """
+    start from domes.  theta, theta0: radians.  Paper: B9."""
     meshes = {"D": mesh.polygon_rings(8, 6), "E": examples.polar_cap(20, 7)}
     found = {}
     for letter, (V, Q, polygon) in meshes.items():
@@ -67,8 +65,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
 
     theta, theta0: radians, of the nets; azimuth, elevation: the camera, radians.  Edges have
     the colours of u and v; where a mesh is refused, the names spread from one face until they
-    meet in disagreement along the dotted edges.  Paper: B9.
-    """
+    meet in disagreement along the dotted edges.  Paper: B9."""
     figure, axes = plot.canvas(MOSAIC, 7.4, 7.2)
     data, exact, claims = {}, [], {}
     for name, (title, V, Q, polygon) in gallery().items():

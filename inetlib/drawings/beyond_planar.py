@@ -12,8 +12,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     """A leaf filled with a net, a bent annulus, a hexagon with rings, and its middle.
 
     theta, theta0: radians, of the hexagon (C and D), the others have 60 degrees; tip: angle
-    of the leaf's tips, radians; pull: of two handles of the annulus.  Paper: B7.
-    """
+    of the leaf's tips, radians; pull: of two handles of the annulus.  Paper: B7."""
     figure, axes = plot.canvas([list("AB"), list("CD")], 7.2, 6.0)
     equal = 60 * DEGREE, 60 * DEGREE
     one, Q1, held1, outline = leaf(*equal, tip=tip)
@@ -60,8 +59,7 @@ def leaf(theta=60 * DEGREE, theta0=60 * DEGREE, cells=14, tip=80 * DEGREE, bend=
 
     cells: quads along u, as many along v as suit the angles; tip: the angle of the leaf's
     two tips, radians; bend: how far its middle line bends up, in half lengths.  Two opposite
-    corners of the grid are handles at the tips, the rest of its boundary glides.  Paper: B7.
-    """
+    corners of the grid are handles at the tips, the rest of its boundary glides.  Paper: B7."""
     _, mu = parallelogram.ratios(theta, theta0)
     rows = max(1, round(cells * mu))
     Q = mesh.grid_quads(cells, rows)
@@ -77,8 +75,7 @@ def annulus(theta=60 * DEGREE, theta0=60 * DEGREE, around=36, rows=10, pull=0.35
     """A closed strip pulled out of its round shape: (Planar, Q, handles).
 
     around, rows: quads around and across; pull: how far two of the four handles on the outer
-    rim move outwards, in its radii.  Two more handles hold the inner rim.  Paper: B7.
-    """
+    rim move outwards, in its radii.  Two more handles hold the inner rim.  Paper: B7."""
     if around % 4:
         raise ValueError(f"around = {around}: a multiple of 4 is wanted")
     Q = mesh.grid_quads(around, rows) % (around * (rows + 1))
@@ -94,8 +91,7 @@ def closed_strip(theta, theta0, around, rows):
     """The round net on a closed strip, complex (around, rows + 1), of radius 1 outside.
 
     Its points are w^i b^j with w^around = 1: the equations ask for b = (1 + K w) / (w + K),
-    so it closes for all angles, with rings whose ratio |b| the angles decide.  Paper: B7.
-    """
+    so it closes for all angles, with rings whose ratio |b| the angles decide.  Paper: B7."""
     K, w = planar.factor_k(theta, theta0), np.exp(2j * np.pi / around)
     b = (1 + K * w) / (w + K)
     return w ** np.arange(around)[:, None] * b ** np.arange(rows + 1)
@@ -105,8 +101,7 @@ def hexagon(theta=60 * DEGREE, theta0=45 * DEGREE, rings=8, obtuse=0.72):
     """A hexagon with rings of quads, six corners as handles: (Planar, Q, handles, polygon).
 
     obtuse: distance from the middle of the three corners with obtuse angles; 1 for the others.
-    Paper: B7.
-    """
+    Paper: B7."""
     _, Q, polygon = mesh.polygon_rings(6, rings)
     rim = max(mesh.boundary_loops(Q), key=len)
     held = rim[np.bincount(Q.ravel())[rim] == 1]

@@ -29,8 +29,7 @@ def draw(rho=0.95 + 1.15j):
     rho: complex, in the upper half plane, else ValueError.  (A) the circles of mu and lam, the
     rays of theta0 and the arcs of theta; bold those through rho.  (B) the quad of rho with its
     parallelogram.  (C) its four directions, a harmonic pencil, and the gaps between them.
-    Paper: B2, B10.
-    """
+    Paper: B2, B10."""
     shape = parallelogram.from_rho(rho)
     figure, axes = plot.canvas([["A", "B"], ["A", "C"]], 7.4, 3.75, [2.45, 1])
     half_plane(axes["A"], rho)
@@ -51,8 +50,7 @@ def draw(rho=0.95 + 1.15j):
 def explore(theta=60, theta0=45):
     """The figure of one pair of angles in degrees, for `ipywidgets.interact`; returns it.
 
-    Paper: B2.
-    """
+    Paper: B2."""
     lam, mu = parallelogram.ratios(theta * DEGREE, theta0 * DEGREE)
     return draw(complex(parallelogram.rho(lam, mu))).figure
 
@@ -66,8 +64,7 @@ def special():
 def half_plane(ax, rho):
     """The families of circles and rays, those through rho bold, and the special points.
 
-    Paper: B2.
-    """
+    Paper: B2."""
     ax.set(xlim=(-WIDE, WIDE), ylim=(-0.34, HIGH), autoscale_on=False)
     thin = [("u", _half(*parallelogram.mu_circle(ratio))) for ratio in RATIOS]
     thin += [("d1", _half(*parallelogram.lam_circle(ratio))) for ratio in RATIOS if ratio != 1]
@@ -129,8 +126,7 @@ def _chosen(ax, rho):
 def quad(ax, rho):
     """A quad with the diagonals d1, d2 and medial lines of rho, and its parallelogram.
 
-    Paper: B2.
-    """
+    Paper: B2."""
     d1, d2 = 1 - rho, 1 + rho
     middle = 0.08 * d1 - 0.1 * d2  # where the diagonals cross, off the middle: no parallelogram
     v = np.array([-d1 / 2 - middle, -d2 / 2 + middle, d1 / 2 - middle, d2 / 2 + middle])

@@ -19,8 +19,7 @@ def nets(theta=60 * DEGREE, theta0=45 * DEGREE, sizes=SIZES):
     The images of a sheared grid of side 1 under (z + 1.2)^2, exp and 1 / (z + 1.2); the exact
     web on a sphere; an optimised freeform roof of sizes[0] x sizes[0] quads, refined by a
     spline and optimised again.  All have exactly the two angles (radians) in their faces, except
-    under 1/z, which has them up to O(m^-2).
-    """
+    under 1/z, which has them up to O(m^-2)."""
     maps = {
         "z2": (lambda z: (z + 1.2) ** 2, 0),
         "exp": (np.exp, 1),
@@ -56,8 +55,7 @@ def refined(theta, theta0, sizes=SIZES):
 def deviation(V, Q, theta, theta0, unit=False, part=1.0):
     """The largest deviations of the star angles from (theta, theta0), radians, two numbers.
 
-    part: those that this part of the vertices stay below; unit: see `measure.star_angles`.
-    """
+    part: those that this part of the vertices stay below; unit: see `measure.star_angles`."""
     star = measure.star_angles(V, Q, unit)
     off = np.abs([star.theta - theta, star.theta0 - theta0])
     return np.quantile(off, part, axis=1)
@@ -78,8 +76,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
 
     theta, theta0: radians.  The largest deviation of theta0 over the inner vertices, for the
     roof the one that 90 % of them stay below.  Full lines: chords over two edges; dotted: unit
-    tangents.
-    """
+    tangents."""
     figure, axes = plot.canvas([["A", "B"], ["C", "B"]], 7.4, 4.1, [1, 1.15])
     found = nets(theta, theta0)
     chords, units = (table(found, theta, theta0, unit) for unit in (False, True))

@@ -17,8 +17,7 @@ def draw(theta=70 * DEGREE, theta0=55 * DEGREE, equal=60 * DEGREE):
     theta, theta0: angles of the first one, equal: both angles of the second one; radians in
     (0, pi), else ValueError.  All panels have a = |BC| = 1 and one scale.
 
-    Paper: Fig. 1.
-    """
+    Paper: Fig. 1."""
     general, special = corners(theta, theta0), corners(equal, equal)
     pair = special[[0, 1, 3]], special[[0, 1, 3]] / np.sqrt(2) + 1.05  # ODC, turned over
     figure, axes = _layout([general, special, np.concatenate(pair)])

@@ -17,8 +17,7 @@ def draw(theta=65 * DEGREE, theta0=70 * DEGREE, equal=(60 * DEGREE, 45 * DEGREE,
 
     theta, theta0: angles of (A); (B) has the ratios (1/lam, mu), (C) (lam, 1/mu) and (D) both
     reciprocals.  equal: the angles of (E), (F), (G).  Radians in (0, pi), else ValueError.
-    All have the side a = 1 and one scale.  Paper: Fig. 2.
-    """
+    All have the side a = 1 and one scale.  Paper: Fig. 2."""
     angles = [(a, b) for a in (theta, np.pi - theta) for b in (theta0, np.pi - theta0)]
     angles += [(angle, angle) for angle in equal]
     texts = [f"$({ratios})$" for ratios in RATIOS] + [_equal_ratio(angle) for angle in equal]

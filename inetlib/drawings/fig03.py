@@ -21,8 +21,7 @@ def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
 
     theta, theta0: radians, the angles of the grid A; theta1 and theta2: both angles of the
     grids B and C; cells: the patterns C1 to C3 have cells x cells quads, an even number.
-    Paper: Fig. 3.
-    """
+    Paper: Fig. 3."""
     figure, axes = plot.canvas(MOSAIC, 7.2, 6.6)
     angles = {"A": (theta, theta0), "B": (theta1, theta1), "C": (theta2, theta2)}
     z = {name: _grid(*angles[name], *SPANS[name]) for name in angles}
@@ -44,8 +43,7 @@ def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
 def _grid(theta, theta0, m, first, n):
     """The grid of App. A.2: unit edges on rows at the heights first h, (first + 1) h, ...
 
-    The slanted lines meet the real axis in the integers -m-1 ... -1, so none passes through 0.
-    """
+    The slanted lines meet the real axis in the integers -m-1 ... -1, so none passes through 0."""
     _, mu = parallelogram.ratios(theta, theta0)
     origin = -m - 1 + first * np.exp(1j * theta0) / mu
     return conformal.sheared_grid(theta, theta0, m, n, origin=origin)
@@ -55,8 +53,7 @@ def _patterns(theta, cells):
     """The images C1, C2, C3 of a sheared grid with both angles theta, as a dict.
 
     The grid stands above 0 for C1 and C2.  For C3 its centre is 0: the two sheets of z^2
-    coincide.  ValueError for odd `cells`, where z^2 would collapse a quad.
-    """
+    coincide.  ValueError for odd `cells`, where z^2 would collapse a quad."""
     if cells % 2:
         raise ValueError(f"cells = {cells}: an even number is wanted, so that 0 is a vertex in C3")
     z = conformal.sheared_grid(theta, theta, cells, cells)

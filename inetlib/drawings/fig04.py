@@ -16,8 +16,7 @@ def draw(theta=LEFT[0], theta0=LEFT[1], alone=SIXTY, azimuth=VIEW[0], elevation=
     """Two quads in space, seen from outside, each with its inscribed parallelogram.
 
     theta, theta0: angles of the left quad; alone: both angles of the right one; azimuth,
-    elevation: the camera; all in radians.  Paper: Fig. 4.
-    """
+    elevation: the camera; all in radians.  Paper: Fig. 4."""
     figure, axes = plot.canvas([["A", "B"]], 7.2, 2.45)
     view = plot.camera(azimuth, elevation)
     data, nets, claims = {}, [], {}

@@ -34,8 +34,7 @@ def draw(
 
     theta, theta0: angles of the web; lines, cells: steps of the smooth web (even) and of the
     mesh (odd); size: of the parameter square; azimuth, elevation: the camera; radians.
-    Paper: Fig. 5.
-    """
+    Paper: Fig. 5."""
     asked = theta, theta0
     rho = parallelogram.rho(*parallelogram.ratios(*asked))
     figure, axes = plot.canvas([["A", "A'"], ["B", "B'"]], 7.2, 6.4, ratios=[1, 1.35])

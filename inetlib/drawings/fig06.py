@@ -16,8 +16,7 @@ def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=2
     """Four isogonal nets on a sphere with their black quads, and one parallelogram of each.
 
     angle: radians, theta in A, theta0 in B, both in C; cells: about how many faces each way;
-    size: of the net along u; azimuth, elevation: the camera, radians.  Paper: Fig. 6.
-    """
+    size: of the net along u; azimuth, elevation: the camera, radians.  Paper: Fig. 6."""
     figure, axes = plot.canvas([list("ABCD"), list("abcd")], 7.6, 3.9)
     view = plot.camera(azimuth, elevation)
     asked = {"A": (angle, RIGHT), "B": (RIGHT, angle), "C": (angle, angle), "D": (RIGHT, RIGHT)}

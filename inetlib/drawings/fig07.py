@@ -31,8 +31,7 @@ def draw(
     theta, theta0: angles of the net; cells: faces each way, those along u close around the
     cylinder of curvature k = 1; azimuth, elevation: the camera; radians.  geodesic, edited:
     control points, scaled to the length of the diagonal of the net, which becomes that curve.
-    Paper: Fig. 7.
-    """
+    Paper: Fig. 7."""
     z = conformal.sheared_grid(theta, theta0, cells, cells, edge=2 * np.pi / cells)
     z = z - z.mean()
     maps = {name: _rolling(k / 4) for k, name in enumerate("ABCDE")} | {"F": _cone(z)}

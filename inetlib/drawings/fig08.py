@@ -12,8 +12,7 @@ def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 
     around: squares of a full turn of the catenoid; rows: of squares; azimuth, elevation: the
-    camera, radians.  Paper: Fig. 8.
-    """
+    camera, radians.  Paper: Fig. 8."""
     figure, axes = plot.canvas([["A", "B"]], 7.2, 3.3, ratios=[1, 1.1])
     _squares(axes["A"])
     step = 2 * np.pi / around

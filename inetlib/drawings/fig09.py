@@ -33,8 +33,7 @@ def draw(around=20, t=45 * DEGREE):
     around: steps of a full turn of u; t: of the conjugate minimal surface, radians.  Column 2
     is column 1 optimised to (80, 45) degrees, column 4 is column 3, the images of column 1
     under inversions, optimised to (50, 50), both on their surfaces.  In each picture one
-    u-curve, in column 1 a loxodrome, is highlighted.  Paper: Fig. 9.
-    """
+    u-curve, in column 1 a loxodrome, is highlighted.  Paper: Fig. 9."""
     panels = [[f"{letter}{column}" for column in TITLES] for letter in NAMES]
     figure, axes = plot.canvas(panels, 6.6, 7.9)
     for ax in axes.values():
@@ -85,8 +84,7 @@ def optimised(around=20, t=45 * DEGREE):
     """The ten nets of columns 2 and 4 as {panel: `Glide`}, from "A2" and "A4" to "E4".
 
     around, t: as in `draw`.  On the cylinder, the sphere, the catenoid and their images the
-    nets are closed, as long as the patch is one full turn (around=20).  Paper: Fig. 9, Sec. 6.
-    """
+    nets are closed, as long as the patch is one full turn (around=20).  Paper: Fig. 9, Sec. 6."""
     glides = {}
     for start, (surface, z) in _starts(around, t).items():
         column = int(start[1]) + 1
@@ -97,8 +95,7 @@ def optimised(around=20, t=45 * DEGREE):
 def _glide(surface, z, angles):
     """The net over the grid z, optimised to the angles on the surface: a `Glide`.
 
-    Where its last column falls on the first the two are glued, and no seam can open.
-    """
+    Where its last column falls on the first the two are glued, and no seam can open."""
     V = surface.point(z.real, z.imag)
     closed = np.allclose(V[:, 0], V[:, -1], rtol=0, atol=1e-9)
     V = V[:, :-1] if closed else V
@@ -120,8 +117,7 @@ def distances(glides):
     off: the farthest vertex from the analytic surface; there, back: one-sided Hausdorff
     distances between the optimised net and its start (`measure.hausdorff`), which see how far
     the border has moved too; all over the diagonal of the start's bounding box.
-    printed: the paper's number, in a unit that it does not state (E16), or None.  Paper: Fig. 9.
-    """
+    printed: the paper's number, in a unit that it does not state (E16), or None.  Paper: Fig. 9."""
     rows = []
     for panel, g in glides.items():
         V = g.result.V

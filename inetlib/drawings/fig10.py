@@ -14,8 +14,7 @@ def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on a sphere, and seen from the north pole.
 
     around: steps of a full turn; rows: of the net; top: its uppermost parallel, in steps
-    above the equator; azimuth, elevation: the camera, radians.  Paper: Fig. 10.
-    """
+    above the equator; azimuth, elevation: the camera, radians.  Paper: Fig. 10."""
     figure, axes = plot.canvas([["A", "A'"]], 6.6, 3.2)
     step = 2 * np.pi / around
     z = isothermal.domain(rows, around, step, 1j * top * step)

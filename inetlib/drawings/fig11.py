@@ -17,8 +17,7 @@ def draw(theta=ANGLES[0], theta0=ANGLES[1], m=18, profile=None, azimuth=VIEW[0],
 
     theta, theta0: radians; m: quads around the axis; profile: a `surfaces.Profile`, default
     the vase; azimuth, elevation: the camera, radians, A at azimuth 0 (take a negative
-    azimuth for obtuse theta0).  Paper: Fig. 11.
-    """
+    azimuth for obtuse theta0).  Paper: Fig. 11."""
     net = loxodrome.web(profile or surfaces.vase_profile(), theta, theta0, m)
     figure, axes = plot.canvas([list("ABC"), list("abc")], 7.0, 5.8)
     axes["A"].get_gridspec().set_height_ratios([2.3, 1])

@@ -24,8 +24,7 @@ def nets(formulation="ratio", m=20, n=20, weights=patches.WEIGHTS):
     """The start and the five nets: (V, Q, {"A": `solver.Result`, ... "E"}).
 
     formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations and
-    goes to the angles at once.  m, n: quads each way.  Paper: Fig. 12, Table 1.
-    """
+    goes to the angles at once.  m, n: quads each way.  Paper: Fig. 12, Table 1."""
     V, Q = surfaces.freeform_patch(m, n)
     same = {"reference": reference.mesh(V, Q), "weights": weights, "formulation": formulation}
     found = {}
@@ -41,8 +40,7 @@ def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
 
     m, n: quads each way; azimuth, elevation: the camera, radians.  The start is coloured by
     the larger deviation of theta and theta0 from their means.  Each panel shows four faces
-    enlarged.  Paper: Fig. 12.
-    """
+    enlarged.  Paper: Fig. 12."""
     V, Q, found = nets(m=m, n=n)
     figure, axes = plot.canvas([["start", "A", "B"], ["C", "D", "E"]], 7.4, 5.8)
     view = plot.camera(azimuth, elevation)

@@ -20,8 +20,7 @@ def start(dome=0.45, wave=0.1):
     """A hexagon and eight rings of quads on a dome with six waves: (V, Q, polygon).
 
     dome, wave: height and depth of the waves along the boundary, in radii of the mesh; the
-    bounding box gets the diagonal 1.  Paper: Fig. 13.
-    """
+    bounding box gets the diagonal 1.  Paper: Fig. 13."""
     V, Q, polygon = mesh.polygon_rings(SIDES, RINGS)
     return patches.domed(V, dome, wave, SIDES), Q, polygon
 
@@ -30,8 +29,7 @@ def nets(formulation="ratio", dome=0.45, wave=0.1, weights=patches.WEIGHTS):
     """The start and the two nets: (V, Q, polygon, {"A": `solver.Result`, "B"}).
 
     formulation: of `solver.optimize`; "paper" takes the printed numbers of iterations.  The
-    wanted angles change step by step from those of the start.  Paper: Fig. 13, Table 1.
-    """
+    wanted angles change step by step from those of the start.  Paper: Fig. 13, Table 1."""
     V, Q, polygon = start(dome, wave)
     same = {"reference": reference.mesh(V, Q), "weights": weights, "polygons": [polygon]}
     found = {}
@@ -48,8 +46,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
 
     dome, wave: of the `start`; azimuth, elevation: the camera, radians.  The images keep the
     connectivity, and the angles up to the size of the quads: they are coloured by the larger
-    deviation of theta and theta0 from those of the net.  Paper: Fig. 13.
-    """
+    deviation of theta and theta0 from those of the net.  Paper: Fig. 13."""
     V, Q, polygon, found = nets(dome=dome, wave=wave)
     figure, axes = plot.canvas([["start", "A", "B"], ["steps", "A'", "B'"]], 7.4, 5.6)
     view = plot.camera(azimuth, elevation)

@@ -1,8 +1,7 @@
 """The (arccos 1/sqrt 5, 45 degree) net of an isothermal surface.
 
 In the squares of the (u, v) plane its u-curves run along diagonals and its v-curves along
-horizontal edges; a face is the parallelogram of two edges and two diagonals of neighbours.
-"""
+horizontal edges; a face is the parallelogram of two edges and two diagonals of neighbours."""
 
 import numpy as np
 
@@ -14,8 +13,7 @@ ANGLES = np.arccos(1 / np.sqrt(5)), np.pi / 4
 def domain(m, n, step, corner=0):
     """Grid points u + iv, complex (m+1, n+1): m rows downwards, n along the upper edge.
 
-    step: side of the squares; corner: the upper left one.
-    """
+    step: side of the squares; corner: the upper left one."""
     edge = np.sqrt(2) * step
     return conformal.sheared_grid(*ANGLES, m, n, origin=corner, edge=edge, direction=1 - 1j)
 

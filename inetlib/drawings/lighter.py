@@ -11,8 +11,7 @@ def lighter(collection):
 
     Lines wait, and are painted together, until a face comes that covers one of them.  The
     faces lose their own edges: for scenes whose lines cover all of these.  Returns the
-    collection, changed.
-    """
+    collection, changed."""
     faces = collection.get_facecolors()
     edges, widths = collection.get_edgecolors(), collection.get_linewidths()
     painted, waiting = [], []

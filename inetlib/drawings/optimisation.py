@@ -26,8 +26,7 @@ def energies(theta=np.pi / 2):
 
     Returns (figure, lines): a panel for the start and each of `ENERGIES`, and a table as
     lists [name, steps, area ratio, unfairness, distance from the surface, from its boundary],
-    distances as fractions of the bounding box's diagonal.
-    """
+    distances as fractions of the bounding box's diagonal."""
     V, Q = surfaces.freeform_patch()
     near = reference.mesh(V, Q)
     lines = [["start", 0, *_numbers(V, Q, near)]]
@@ -59,8 +58,7 @@ def convergence(results):
     """Residual and largest deviation of the angles, step by step; results: {name: `Result`}.
 
     Residuals of different formulations are different things; the angles are not.  Dots mark
-    steps with shape energies.  Returns the figure.
-    """
+    steps with shape energies.  Returns the figure."""
     plot.use_style()
     figure, (left, right) = plt.subplots(1, 2, figsize=(7.4, 2.8))
     for name, result in results.items():

@@ -21,8 +21,7 @@ def panels(V, Q, curves, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     """Three pictures of a net: sizes, planarity, and a motif (see `motif.place`) in every quad.
 
     curves: placed ones, a list of (f, k, 3); azimuth, elevation: the camera, radians.
-    Returns the figure.
-    """
+    Returns the figure."""
     figure, axes = plot.canvas([["size", "planarity", "motif"]], 7.4, 3.1)
     view = plot.camera(azimuth, elevation)
     d1, d2, _, _ = measure.vectors(V, Q)

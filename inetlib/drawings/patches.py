@@ -19,8 +19,7 @@ LIGHT = (-0.45, -0.5, 0.75)
 def domed(V, dome, wave, waves):
     """The plane mesh on a dome with waves of this depth along its boundary, in its radii.
 
-    The bounding box gets the diagonal 1.
-    """
+    The bounding box gets the diagonal 1."""
     z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
     r, wavy = np.abs(z), np.real((z / np.abs(z)) ** waves)
     V = np.stack([z.real, z.imag, dome * (1 - r**2) + wave * r**3 * wavy], axis=1)
@@ -41,8 +40,7 @@ def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=()):
     """Parallelograms in their colours on a light surface, u- and v-curves, and more lines.
 
     view: a `plot.camera`; colours: one, or RGB for each quad; lines: as for `plot.scene`;
-    polygons: (corners (k, 3), colour) of further faces.
-    """
+    polygons: (corners (k, 3), colour) of further faces."""
     points, black, pale = plot.cells(V, Q, white=True)
     fill = [_shaded(points, black, colours), _shaded(points, pale, "#f0f2f5", 0.3)]
     faces = np.concatenate([black, pale])
@@ -64,8 +62,7 @@ def _shaded(V, faces, colours, depth=0.45):
 def enlarged(ax, box, V, Q, faces, colours=EXACT):
     """A picture inside a panel: some faces with their 4-web in their mean plane.
 
-    box: of `inset_axes`; faces: numbers; colours: one, or RGB for each of them.
-    """
+    box: of `inset_axes`; faces: numbers; colours: one, or RGB for each of them."""
     ax, Q = ax.inset_axes(box), Q[faces]
     ax.set_axis_off()
     ax.set_aspect("equal")

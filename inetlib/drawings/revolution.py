@@ -1,7 +1,6 @@
 """Webs on opaque surfaces of revolution: lines only where the outside faces the camera.
 
-A net here is one of `loxodrome.web`: it has V, Q, families and rows.
-"""
+A net here is one of `loxodrome.web`: it has V, Q, families and rows."""
 
 import numpy as np
 
@@ -29,8 +28,7 @@ def black_quads(ax, view, net, width=0.7):
 def paint(ax, view, net, outside, fill, lines):
     """The front faces `outside` = (V, faces), the plain back faces, lines, the upper rim.
 
-    fill: a colour for each of the front faces; lines: see `plot.scene`.
-    """
+    fill: a colour for each of the front faces; lines: see `plot.scene`."""
     V, faces = outside
     back = net.Q[~facing(view, net.V, net.Q)]
     points = np.concatenate([net.V, V])

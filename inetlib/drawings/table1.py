@@ -35,8 +35,7 @@ NOISE = 1e-20  # residuals below are rounding errors
 def results(name):
     """The seven optimised nets of one of `VARIANTS`: {row: (Q, `solver.Result`)}.
 
-    Paper: Table 1.
-    """
+    Paper: Table 1."""
     formulation, weights = VARIANTS[name]
     found = {}
     for figure, module in (("12", fig12), ("13", fig13)):
@@ -49,8 +48,7 @@ def rows(variants):
     """The lines of the table as lists of strings; variants: {name: its `results`}.
 
     Deviations are degrees from the wanted (or found) angles, over all faces.
-    Paper: Table 1, App. A.4.
-    """
+    Paper: Table 1, App. A.4."""
     lines = []
     for row, (F, variables, constraints, residual, steps, _) in PRINTED.items():
         printed = [F, variables, constraints, residual, steps]

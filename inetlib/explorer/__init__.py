@@ -1,8 +1,7 @@
 """The explorer: turn the angles of a net and see it change, in a browser or in JupyterLab.
 
 `session` is one explorer without a page; `scene`, `page`, `app` and `serve` are its page, and
-need the packages of the extra `view`.
-"""
+need the packages of the extra `view`."""
 
 __all__ = ["show", "turn"]
 

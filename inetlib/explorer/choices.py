@@ -124,8 +124,7 @@ def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
     """(the choice with these values, sentences on those that are refused).
 
     Values may be texts, as in a link.  With the lock on, one angle takes the other along; turning
-    it on makes theta0 equal to theta.  A new surface lowers the bending to the largest it has.
-    """
+    it on makes theta0 equal to theta.  A new surface lowers the bending to the largest it has."""
     good: dict = {}
     problems = []
     for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending

@@ -55,8 +55,7 @@ class Layout(NamedTuple):
     """What is filled and drawn of a net, by vertex numbers.
 
     means: arrays (k, s) of vertices of the net; their means are further vertices, in order;
-    quads (f, 4) and triangles (t, 3) are filled; lines: {family: (k, 2)} segments.
-    """
+    quads (f, 4) and triangles (t, 3) are filled; lines: {family: (k, 2)} segments."""
 
     means: list
     quads: np.ndarray
@@ -68,8 +67,7 @@ def layout(Q, count, families, parallelograms=False) -> Layout:
     """The `Layout` of quads Q (f, 4) on `count` vertices, with the named families of curves.
 
     With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
-    Where diagonals are shown, the quads become triangles around the mean of their corners.
-    """
+    Where diagonals are shown, the quads become triangles around the mean of their corners."""
     after, before = np.roll(Q, -1, axis=1), np.roll(Q, 1, axis=1)
     sides = np.sort(np.stack([Q, after], axis=2).reshape(-1, 2), axis=1)
     edges, around = np.unique(sides, axis=0, return_inverse=True)
@@ -113,8 +111,7 @@ def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> 
 def picture(V, Q, choice, shade, camera, form) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
-    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`.
-    """
+    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`."""
     plan = layout(Q, len(V), choice.families, choice.parallelograms)
     W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
     fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")

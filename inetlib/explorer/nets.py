@@ -22,8 +22,7 @@ IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
 class Recipe(NamedTuple):
     """Three lines of Python with {names} in the place of values, and a sentence on the net.
 
-    Some `rooms` are imported, `start` is done, `net` makes the net, `take` finds V and Q in it.
-    """
+    Some `rooms` are imported, `start` is done, `net` makes the net, `take` finds V and Q in it."""
 
     rooms: str
     start: str
@@ -112,8 +111,7 @@ def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
     """V (n, 3), Q (f, 4) of a choice, and a sentence on the net; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
-    (step None) and every step, and may return False to end it.
-    """
+    (step None) and every step, and may return False to end it."""
     recipe, values = _recipe(choice), _values(choice)
     names = {k: np.radians(x) if k in IN_DEGREES else x for k, x in values.items()}
     names |= {"np": np, "callback": callback, "surface": surface}

@@ -42,8 +42,7 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     """The explorer in a notebook: `explorer.show(kind="revolution", theta=75, theta0=60)`.
 
     values: those of `choices.Choice`, angles in degrees, else ValueError.  live: a `Live` page,
-    or a still IPython Image; by default live where a person runs the notebook.
-    """
+    or a still IPython Image; by default live where a person runs the notebook."""
     session = Session()
     _change(session, **values)
     if session.must_search:
@@ -64,8 +63,7 @@ def turn(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live
 
     live: by default where there is a person: in JupyterLab as a `Live` page that the browser draws
     in its own colours and widths, in a script with a display as a window.  ValueError for arrays
-    that are no net.
-    """
+    that are no net."""
     notebook = "ipykernel" in sys.modules
     if live is None:
         live = person() if notebook else not shaded.headless()

@@ -1,7 +1,6 @@
 """Small drawings of the explorer as SVG text: the parallelogram, two histograms, a profile.
 
-Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2.
-"""
+Lines are drawn in the page's own colours: `currentColor`, and the classes u, v, d1, d2."""
 
 from collections.abc import Sequence
 from contextlib import suppress

@@ -86,8 +86,7 @@ def borrow() -> Scene:
     """A `Scene`, for `give_back` when it is no longer needed.
 
     VTK objects that trame has sent to a browser call Python when they are destroyed, and end the
-    process where the garbage collector finds them.  So none ever is: the next tab takes it.
-    """
+    process where the garbage collector finds them.  So none ever is: the next tab takes it."""
     return _free.pop() if _free else Scene()
 
 

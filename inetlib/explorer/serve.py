@@ -1,7 +1,6 @@
 """The way in: one local address, and for every browser tab an `app.App` of its own.
 
-Only this machine can connect, and only pages from this address.
-"""
+Only this machine can connect, and only pages from this address."""
 
 import asyncio
 import os
@@ -148,8 +147,7 @@ async def _up(request):
 def serve(surface=None, path=None, port: int | None = None, ready: Callable = print) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
-    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`.
-    """
+    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`."""
 
     async def run():
         door, end = Door(surface, path), asyncio.Event()

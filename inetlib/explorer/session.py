@@ -20,8 +20,7 @@ class Session:
 
     surface, path: `io.Surface` of the file on the command line and its name; net: V, Q of a net
     that is given and not made here.  V, Q, report, message: the net that is shown, of the choice
-    `shown`; problem: why there is no net of the choice, or ""; run: the search under way.
-    """
+    `shown`; problem: why there is no net of the choice, or ""; run: the search under way."""
 
     def __init__(self, surface=None, path=None, net=None):
         self.surface, self.path, self.given = surface, path, net is not None
@@ -122,8 +121,7 @@ class Session:
         """The net as the bytes of a file: `.svg` or `.png`, a picture, else a mesh of `io`.
 
         azimuth, elevation: of the viewer, radians, for pictures.  ValueError for other suffixes
-        and where there is no net.
-        """
+        and where there is no net."""
         if suffix not in SAVED:
             raise ValueError(f"{suffix}: one of {' '.join(SAVED)} is wanted")
         if self.V is None:

@@ -2,8 +2,7 @@
 
 Coordinates are kept bit by bit (GLB and STL have float32 and triangles only), and so is the
 order of vertices, faces and corners.  What is wrong with a file is a ValueError of one sentence
-that starts with its name; a missing package is an ImportError that says what to install.
-"""
+that starts with its name; a missing package is an ImportError that says what to install."""
 
 import importlib.util
 import os
@@ -68,8 +67,7 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
     F is int64, (f, 3) or (f, 4) when all faces are triangles or all are quads, else a list
     of lists.  Equal points of STL and GLB files are one vertex.  ValueError when the file is
     missing, empty, broken, of another kind than its suffix says, without faces, or has an
-    index out of range or a coordinate that is NaN, infinite or beyond 1e100.
-    """
+    index out of range or a coordinate that is NaN, infinite or beyond 1e100."""
     path = Path(path)
     known = _format(path, READERS, "read")
     with named(path), np.errstate(all="ignore"):
@@ -88,8 +86,7 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
 def surface(path: str | Path, merge: bool = True) -> Surface:
     """The file's mesh as a surface of triangles: `repair.manifold`, which `merge` is for.
 
-    ValueError as in `read`, and for what is no surface.
-    """
+    ValueError as in `read`, and for what is no surface."""
     V, F = read(path)
     from ..repair import manifold
 
@@ -103,8 +100,7 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
 def net(path: str | Path) -> Net:
     """The file's mesh as a net, with the order and the labels of the file.
 
-    ValueError as in `read`, when no face is a quad, and when a face uses a vertex twice.
-    """
+    ValueError as in `read`, when no face is a quad, and when a face uses a vertex twice."""
     V, F = read(path)
     Q, others = F, []
     if isinstance(F, list):
@@ -171,8 +167,7 @@ def check_output(path: str | Path, curves: bool = False, force: bool = False) ->
 
     >>> check_output("net.stl")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: net.stl has the suffix '.stl': files to write end with .obj .ply .off ...
-    """
+    ValueError: net.stl has the suffix '.stl': files to write end with .obj .ply .off ..."""
     path = Path(path)
     known = _format(path, WRITERS, "write")
     if curves and not known.curves:
@@ -206,8 +201,7 @@ def write(
 
     ValueError for unknown suffixes, directories, a missing folder, curves in a format without
     them, and indices out of range; FileExistsError without `force`; PermissionError;
-    ImportError when the package for the format is missing.
-    """
+    ImportError when the package for the format is missing."""
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)
     if isinstance(curves, str) and curves == "all":

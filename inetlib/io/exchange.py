@@ -1,7 +1,6 @@
 """VTP, DXF and 3DM, by libraries made for them, which keep float64 and quads.
 
-They are imported when a file asks for them; `io` has looked whether they are there.
-"""
+They are imported when a file asks for them; `io` has looked whether they are there."""
 
 import re
 import subprocess
@@ -22,8 +21,7 @@ numpy.savez(sys.stdout.buffer, points=found.points, padded=found.faces, sizes=si
 def read_vtp(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over.
 
-    Another process reads it: some broken files end the process in which VTK reads them.
-    """
+    Another process reads it: some broken files end the process in which VTK reads them."""
     start = path.read_bytes()[:2000]
     if b"<VTKFile" not in start or b"PolyData" not in start:
         raise ValueError("no VTP file: an XML file of the type PolyData is wanted")

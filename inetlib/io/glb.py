@@ -1,7 +1,6 @@
 """GLB (binary glTF 2.0), float32 by the format.
 
-Read here and not by VTK, whose reader ends the process on some broken files.
-"""
+Read here and not by VTK, whose reader ends the process on some broken files."""
 
 import json
 import struct
@@ -17,8 +16,7 @@ Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
 def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene.
 
-    glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over.
-    """
+    glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over."""
     data = path.read_bytes()
     if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
         raise ValueError("no GLB file (binary glTF), or a broken one")

@@ -1,7 +1,6 @@
 """OBJ and OFF: meshes as lines of text, read strictly and written with every digit.
 
-Readers return points and faces as lists, counted from 0; their ValueErrors name the line.
-"""
+Readers return points and faces as lists, counted from 0; their ValueErrors name the line."""
 
 import re
 from pathlib import Path

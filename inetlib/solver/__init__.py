@@ -2,8 +2,7 @@
 
 `goal` knows what is wanted, `problem` checks the input and holds the shape energies,
 `residuals` are the equations, `run` and `guided` make the steps of either formulation and
-judge every net by `measure`, `sparse` solves; `grids` goes from coarse to fine.
-"""
+judge every net by `measure`, `sparse` solves; `grids` goes from coarse to fine."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -96,8 +95,7 @@ def optimize(
     >>> found.converged, found.theta, round(found.lam, 6)
     (True, 1.2, 1.291682)
 
-    Paper: Table 1.
-    """
+    Paper: Table 1."""
     wanted = aim(theta, theta0, lam, mu, equal)
     ours = formulation == "ratio"
     _check_choice("residual", residual, ("log", "quadratic"))

@@ -1,8 +1,7 @@
 """How many numbers of an isogonal net may still be chosen: the rank of its equations.
 
 Two equations a face, three coordinates a vertex: 3 V - 2 F degrees of freedom wherever the
-equations are independent at first order.  Paper: B8.
-"""
+equations are independent at first order.  Paper: B8."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -30,8 +29,7 @@ def jacobian(V: np.ndarray, Q: np.ndarray) -> csr_array:
     """The derivative of (log lam, log mu) of all faces by all coordinates: (2 f, 3 n), sparse.
 
     V: (n, 3), Q: (f, 4), labelled.  Row 2 k belongs to lam of face k, row 2 k + 1 to mu;
-    column 3 i + c to the coordinate c of vertex i.  Paper: B8.
-    """
+    column 3 i + c to the coordinate c of vertex i.  Paper: B8."""
     V, Q = mesh.check_arrays(V, Q)
     _, blocks = residuals.log_ratios(V[Q].reshape(-1, 12))
     return sparse.rows(blocks, sparse.coordinates(Q), V.size)
@@ -43,8 +41,7 @@ def count(
     """The `Freedom` of the net (V, Q) when the vertices `fixed` (numbers or mask) stay.
 
     A singular value below `tolerance` of the largest counts as 0.  ValueError for meshes of
-    more than 1200 faces: the decomposition is dense.  Paper: B8.
-    """
+    more than 1200 faces: the decomposition is dense.  Paper: B8."""
     if len(Q) > LARGEST:
         raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")
     free = np.ones(len(V), dtype=bool)

@@ -1,8 +1,7 @@
 """What is wanted of a net, and the way there: given angles or ratios, the rest left free.
 
 A `Goal` is a curve, a surface or a point in the plane of (log lam, log mu): what is given
-fixes part of it, and up to two numbers s, the freedom, remain.
-"""
+fixes part of it, and up to two numbers s, the freedom, remain."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -41,8 +40,7 @@ def aim(
     >>> aim(lam=1, mu=1).equal, aim(theta=1.2).kind, aim(1.2, 1.3).values
     (True, 'theta', (1.2, 1.3))
 
-    Paper: Eq. (19), Eq. (20), Eq. (22).
-    """
+    Paper: Eq. (19), Eq. (20), Eq. (22)."""
     known = {}
     for name, x in {"theta": theta, "theta0": theta0, "lam": lam, "mu": mu}.items():
         if x is not None:
@@ -92,8 +90,7 @@ def logs(goal: Goal, s: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
 
     "angles" has no freedom; "theta" and "mu" have s = (log lam), "theta0" and "lam" (log mu),
     "equal" the common logarithm, "free" both.  By Lemma 1 tanh(log mu) = cos theta /
-    cosh(log lam), and the same with the names exchanged.  Paper: Lemma 1.
-    """
+    cosh(log lam), and the same with the names exchanged.  Paper: Lemma 1."""
     s = np.asarray(s, dtype=float)
     if goal.kind == "angles":
         return np.log(parallelogram.ratios(*goal.values)), np.zeros((2, 0))
@@ -148,8 +145,7 @@ def towards(goal: Goal, start: Sequence[float], step: float) -> list[Goal]:
     """Goals on the straight way from the values `start` to those of the goal, which comes last.
 
     step: the largest change of an angle from one to the next, radians (for a logarithm of
-    a ratio the same number).  With step = inf only the goal itself.
-    """
+    a ratio the same number).  With step = inf only the goal itself."""
     start, end = np.array(start), np.array(goal.values)
     far = np.abs(end - start).max(initial=0.0)
     count = max(1, int(np.ceil(far / step - 1e-9)))

@@ -1,7 +1,6 @@
 """Large grids: solved coarse, refined by splines, and set right by a few smallest steps.
 
-A net of m x n quads is an array P (3, m+1, n+1) inside here, coordinates first.
-"""
+A net of m x n quads is an array P (3, m+1, n+1) inside here, coordinates first."""
 
 import numpy as np
 from tqdm import tqdm
@@ -40,8 +39,7 @@ def optimize(
     solved by `solver.optimize`, then the number of quads is doubled both ways again and
     again; details of X smaller than coarse quads are lost.  Where that fails it is tried
     once more from a finer coarse grid.  `message` says how many steps of the `history` belong
-    to which level.
-    """
+    to which level."""
     wanted = aim(theta, theta0, lam, mu)
     if wanted.kind != "angles":
         raise ValueError("both angles must be fixed by two numbers here: use solver.optimize")

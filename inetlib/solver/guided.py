@@ -5,8 +5,7 @@ Unknowns, with V vertices and F faces and one column each:
                 8 F equations, F more for one given angle, 2 F for two, 1 for a given ratio
   theta mode    3 V + 2 F + 1: vertices, La, Lb of every face, and c1 = lam^2;
                 4 F equations, 1 more for a given angle
-The shape energies add rows, not equations.
-"""
+The shape energies add rows, not equations."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -71,8 +70,7 @@ def logs(lay: Layout, x: np.ndarray) -> np.ndarray:
 def equations(lay: Layout, goal: Goal) -> list[tuple[Callable, np.ndarray, tuple]]:
     """The hard constraints as a list of (function, index (f, k), further arguments).
 
-    Paper: Eq. (17), Eq. (18), Eq. (19), Eq. (20), Eq. (21), Eq. (22).
-    """
+    Paper: Eq. (17), Eq. (18), Eq. (19), Eq. (20), Eq. (21), Eq. (22)."""
 
     def index(*names):
         return np.stack([lay.at[name] for name in names], axis=1)
@@ -122,8 +120,7 @@ def run(log: Log, goals: list[Goal], limit: int, solve: Callable | None = None) 
 
     x holds lengths in units of the diagonal of the bounding box, as the paper scales its
     meshes; solve: a function (A, b) for the linear systems, by `sparse.factor` unless given.
-    Paper: Table 1.
-    """
+    Paper: Table 1."""
     given, V, lay = log.given, log.given.V, None
     solve = solve or (lambda A, b: sparse.factor(A)(b))
     diagonal = np.linalg.norm(np.ptp(V, axis=0))

@@ -18,8 +18,7 @@ class Weights(NamedTuple):
     """Weights of the shape energies, numbers >= 0 or arrays (n,), one number a vertex.
 
     The formulation "ratio" compares them with logarithms of ratios, lengths in mean edges;
-    "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`.
-    """
+    "paper" with squared lengths of a mesh of diagonal 1, so that numbers differ: `PAPER`."""
 
     fairness: float | np.ndarray = 0.02  # omega_2
     closeness: float | np.ndarray = 0.001  # omega_3
@@ -67,8 +66,7 @@ def prepare(
 
     on_surface: keep the vertices on the reference; fixed: vertex numbers, a mask or "boundary";
     mobility (n,), how easily each vertex moves, 0 not at all; polygons: faces that are no quads
-    and bound no boundary of the net; quadratic: the kind of residual, see `run.equations`.
-    """
+    and bound no boundary of the net; quadratic: the kind of residual, see `run.equations`."""
     if isinstance(Q, (list, tuple)) and len({np.size(face) for face in Q}) > 1:
         face = next(k for k, corners in enumerate(Q) if np.size(corners) != 4)
         words = f"face {face} has {np.size(Q[face])} corners: give the quads as Q"
@@ -96,8 +94,7 @@ def prepare(
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     """Matrix (3 n, 3 n) and half gradient (3 n,) of the energies of fairness, approximation
-    and boundary gliding at the net V; the last two only with a reference.
-    """
+    and boundary gliding at the net V; the last two only with a reference."""
     A, g = problem.fair, problem.fair @ V.ravel()
     if problem.reference is None:
         return A, g

@@ -4,8 +4,7 @@ Every function takes the local variables of many places at once, x (f, k) with o
 each place, and returns (residual (f, q), jacobian (f, q, k)).  The corners of a face are the
 first 12 entries of its row, (x, y, z) of v1, v2, v3, v4; of a polyline's three neighbouring
 vertices 9, of a single vertex 3.  Auxiliary variables follow in the order that is stated.
-Where these rows sit in the unknowns, how they are weighted and solved, is not known here.
-"""
+Where these rows sit in the unknowns, how they are weighted and solved, is not known here."""
 
 import numpy as np
 
@@ -34,8 +33,7 @@ def logarithms(d1: np.ndarray, d2: np.ndarray, p: np.ndarray, q: np.ndarray) -> 
     """log |d2| / |d1| and log |p| / |q|, (2, ...), and their gradients (2, 2, 3, ...).
 
     d1, d2, p = d1 + d2 = 2 m13, q = d2 - d1 = 2 m24: (3, ...).  The gradients are those in
-    -d1 and d2 (first axis) of log lam and log mu (second).  Paper: Eq. (11), Eq. (12).
-    """
+    -d1 and d2 (first axis) of log lam and log mu (second).  Paper: Eq. (11), Eq. (12)."""
     s1, s2, sp, sq = (np.einsum("x...,x...->...", a, a) for a in (d1, d2, p, q))
     found = 0.5 * np.log(np.stack([s2 / s1, sp / sq]))
     gradients = np.empty((2, 2, *d1.shape))
@@ -49,8 +47,7 @@ def log_ratios(x: np.ndarray) -> Local:
     """(log lam, log mu) of the faces: logarithms of |d2| / |d1| and |m13| / |m24|.
 
     x: (f, 12).  Free of scale; subtract the wanted logarithms to get a residual.
-    Paper: Eq. (11), Eq. (12).
-    """
+    Paper: Eq. (11), Eq. (12)."""
     found, (one, two) = logarithms(*np.moveaxis(_vectors(x, [0, 1, 2, 3]), 2, 1))
     jacobian = np.stack([one, -two, -one, two], axis=1)  # (ratio, corner, xyz, face)
     return found.T, np.moveaxis(jacobian, 3, 0).reshape(-1, 2, 12)
@@ -61,8 +58,7 @@ def scaled_ratios(x: np.ndarray, lam: float, mu: float, sizes: np.ndarray | None
 
     x: (f, 12); sizes (f, 2) are numbers without derivatives, |d1| |d2| and |m13| |m24| if
     None.  Then the derivatives are those of `log_ratios` at a solution, while the residual
-    stays a polynomial and does not explode where an edge collapses.  Paper: Eq. (11), Eq. (12).
-    """
+    stays a polynomial and does not explode where an edge collapses.  Paper: Eq. (11), Eq. (12)."""
     d1, d2, p, q = vectors = _vectors(x, [0, 1, 2, 3])
     vectors[2:] /= 2
     if sizes is None:
@@ -97,8 +93,7 @@ def _squared(x, rows):
 def proportional(x: np.ndarray) -> Local:
     """L - c K; x: (L, K, c), (f, 3).  Lb = c1 La, and Lp = c2 Lq (printed the other way round).
 
-    Paper: Eq. (17), Eq. (18).
-    """
+    Paper: Eq. (17), Eq. (18)."""
     L, K, c = x.T
     return (L - c * K)[:, None], np.stack([np.ones_like(L), -c, -K], axis=1)[:, None]
 
@@ -117,8 +112,7 @@ def given(x: np.ndarray, value: float) -> Local:
 def given_angle(x: np.ndarray, angle: float) -> Local:
     """(1 + c1)(c2 - 1) - 2 cos theta lam (1 + c2); x: (lam, c1, c2), (f, 3).
 
-    The same function of (mu, c2, c1) and theta0.  Paper: Eq. (20).
-    """
+    The same function of (mu, c2, c1) and theta0.  Paper: Eq. (20)."""
     (ratio, c1, c2), k = x.T, 2 * np.cos(angle)
     residual = (1 + c1) * (c2 - 1) - k * ratio * (1 + c2)
     columns = [-k * (1 + c2), c2 - 1, 1 + c1 - k * ratio]

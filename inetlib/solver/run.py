@@ -71,8 +71,7 @@ def judge(
     """What came of a step (kind, goal): the net V, Q measured against the wanted goal at s.
 
     residual: that of the two logarithms if None.  ValueError where V is no net: a face has
-    collapsed, a coordinate is not finite, the ratios are those of no parallelogram.
-    """
+    collapsed, a coordinate is not finite, the ratios are those of no parallelogram."""
     off = measure.deviations(V, Q, *angles(wanted, s))
     if residual is None:
         found = np.log(np.stack(measure.ratios(V, Q)))
@@ -89,8 +88,7 @@ def equations(
 
     Zero residual: log lam and log mu of every face are those of the goal at the freedom s;
     the Jacobian is in V and minus `slopes` in s.  Of a quadratic problem they are
-    `residuals.scaled_ratios`.  Paper: Eq. (11), Eq. (12).
-    """
+    `residuals.scaled_ratios`.  Paper: Eq. (11), Eq. (12)."""
     wanted, slopes = logs(goal, s)
     x = V[problem.Q].reshape(-1, 12)
     if problem.quadratic:
@@ -105,8 +103,7 @@ def equations(
 def shape_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
     """(change of V, change of s) of one Gauss-Newton step on all energies.
 
-    All lengths are measured in mean edges, so the step does not depend on the scale.
-    """
+    All lengths are measured in mean edges, so the step does not depend on the scale."""
     with timed(problem.seconds, "assemble"):
         f, J, G = equations(problem, V, goal, s)
         f, G = f * problem.edge, G * problem.edge
@@ -133,8 +130,7 @@ def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
     """(change of V, change of s): the smallest change to the linearised angles.
 
     Smallest in the sum of |d|^2 / mobility over the vertices.  On a surface (`on_surface`)
-    the vertices go to their closest points and move along the tangent planes there.
-    """
+    the vertices go to their closest points and move along the tangent planes there."""
     with timed(problem.seconds, "assemble"):
         f, J, G = equations(problem, V, goal, s)
         free, root, lift = _metric(problem, V)
@@ -175,8 +171,7 @@ def _metric(problem, V):
 class Log:
     """The history of an optimisation and its best net.
 
-    best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback.
-    """
+    best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback."""
 
     def __init__(self, given, tolerance, progress, callback):
         self.given, self.callback = given, callback
@@ -190,8 +185,7 @@ class Log:
     def record(self, kind, goal, V, s, size, residual=None):
         """Judge the net V, remember it if it is the best; the `Step`, None if V is no net.
 
-        s: the freedom, that of the mean ratios if None; residual: see `judge`.
-        """
+        s: the freedom, that of the mean ratios if None; residual: see `judge`."""
         given = self.given
         with timed(given.seconds, "check"):
             try:
@@ -242,8 +236,7 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
 def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float) -> None:
     """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
 
-    goals: of the first steps, see `way`; limit: the most steps.
-    """
+    goals: of the first steps, see `way`; limit: the most steps."""
     given, final = log.given, log.given.goal
     plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
     plan += [("shape", final)] * (shape_steps - 1) + [("angle", final)] * ANGLE_STEPS

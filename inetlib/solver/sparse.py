@@ -1,7 +1,6 @@
 """Sparse matrices from local Jacobians, and their factorisation.
 
-From `step` on: a smallest step of a large grid, by conjugate gradients without any matrix.
-"""
+From `step` on: a smallest step of a large grid, by conjugate gradients without any matrix."""
 
 from collections.abc import Callable
 
@@ -24,8 +23,7 @@ INEXACT = 1e-4  # relative residual of the conjugate gradients
 def rows(jacobian: np.ndarray, index: np.ndarray, columns: int) -> csr_array:
     """Local Jacobians (f, q, k) as a sparse matrix (f q, columns).
 
-    index: (f, k), the column of each local variable; within a row all different.
-    """
+    index: (f, k), the column of each local variable; within a row all different."""
     f, q, k = jacobian.shape
     pattern = np.repeat(index, q, axis=0).ravel(), np.arange(0, f * q * k + 1, k)
     return csr_array((np.ascontiguousarray(jacobian).ravel(), *pattern), shape=(f * q, columns))
@@ -48,8 +46,7 @@ def factor(A: csr_array, order: np.ndarray | None = None) -> Callable:
 
     order: a permutation of the rows, such as that of `nested_dissection`; without one, a band
     where A is narrow, else minimum degree on the pattern of A + A^T, many times faster here
-    than SuperLU's default.  Pivots are on the diagonal.
-    """
+    than SuperLU's default.  Pivots are on the diagonal."""
     if order is None:
         return _banded(A) or _superlu(A.tocsc(), "MMD_AT_PLUS_A").solve
     inner = _superlu(A.tocsr()[order].tocsc()[:, order], "NATURAL").solve
@@ -108,8 +105,7 @@ def nested_dissection(points: np.ndarray, A: csr_array) -> np.ndarray:
 
     points (k, d): where the unknowns are, A (b k, b k): b in a row at each point; only its
     pattern counts.  Of each half of the points, those with a neighbour in the other half come
-    last.  Twice as fast as minimum degree from some 10 000 points on.
-    """
+    last.  Twice as fast as minimum degree from some 10 000 points on."""
     count = len(points)
     block = A.shape[0] // count
     pattern = A.tobsr((block, block))
@@ -154,8 +150,7 @@ def equations(P: np.ndarray, log_lam: float, log_mu: float) -> tuple[np.ndarray,
     """(f, A): log |d2| / |d1| - log_lam and log |m13| / |m24| - log_mu, and the gradients.
 
     f (2, m, n), A (2, 2, 3, m, n) as in `residuals.logarithms`: for the faces of a grid.
-    Paper: Eq. (11), Eq. (12).
-    """
+    Paper: Eq. (11), Eq. (12)."""
     d1, d2 = P[:, 1:, :-1] - P[:, :-1, 1:], P[:, 1:, 1:] - P[:, :-1, :-1]
     f, A = logarithms(d1, d2, d1 + d2, d2 - d1)
     f[0] -= log_lam
@@ -203,8 +198,7 @@ def preconditioner(A: np.ndarray) -> Callable:
     Each face is scaled by the Cholesky factor of its 2 x 2 block; what remains is nearly the
     same at every face and is inverted by fast sine transforms: in a wave with the cosines a
     and b along the two directions it is 1 - a b + 2 K (b - a), K the mean coupling of
-    neighbours across u-edges minus that across v-edges.  In single precision.
-    """
+    neighbours across u-edges minus that across v-edges.  In single precision."""
     scale = _scale(A)
     K = _coupling(A, scale)
     a, b = (np.cos(np.pi * np.arange(1, k + 1) / (k + 1)) for k in A.shape[3:])
