@@ -153,22 +153,10 @@ def named(caught):
 
 @given(sizes, sizes)
 def test_grid_quads_are_those_of_a_plain_loop(m, n):
-    Q = mesh.grid_quads(m, n)
+    Q = mesh.grid_quads(float(m), n)
     assert Q.dtype == np.int64
     np.testing.assert_array_equal(Q, slow_grid(m, n))
     np.testing.assert_array_equal(signed_area(positions(m, n)[Q]), 1)
-
-
-@pytest.mark.parametrize("size", [(0, 1), (1, 0), (-2, 3), (float("nan"), 1), (2.5, 1)])
-def test_a_grid_without_quads_or_with_half_a_quad_is_refused(size):
-    with pytest.raises(ValueError, match=r"[mn] = \S+: a whole number, 1 or more"):
-        mesh.grid_quads(*size)
-    assert mesh.grid_quads(2.0, 1).dtype == np.int64
-
-
-@pytest.fixture(scope="module")
-def hexagon():
-    return mesh.polygon_rings(6, 8)
 
 
 @pytest.mark.parametrize("sides", [3, 4, 5, 6, 7])
@@ -185,22 +173,16 @@ def test_ring_k_around_the_polygon_has_two_sides_k_quads(sides):
     assert mesh.is_labelled(Q) == labels_agree(Q) == (sides % 2 == 0)
 
 
-def test_the_hexagon_mesh_has_its_size_and_inner_vertices_of_valence_four(hexagon):
-    V, Q, polygon = hexagon
+def test_the_hexagon_mesh_is_convex_counter_clockwise_and_has_inner_valences_four():
+    V, Q, polygon = mesh.polygon_rings(6, 8)
     assert (V.shape, Q.shape) == ((486, 3), (432, 4))
     assert len(set(polygon.tolist())) == 6 and set(Q.ravel()) == set(range(486))
     valence = np.bincount([k for pair in edges(Q, (0, 1, 2, 3)) for k in pair])
-    assert set(valence[polygon]) == {4}
     inner = set(range(486)) - {a for a, _ in boundary_edges(Q)}
-    assert {int(valence[k]) for k in inner} == {4}
+    assert {int(valence[k]) for k in [*inner, *polygon]} == {4}
     assert len(inner) == 486 - 6 - (12 * 8 + 6)
-
-
-def test_hexagon_and_all_faces_around_it_are_counter_clockwise(hexagon):
-    V, Q, polygon = hexagon
-    corners = V[Q]
     for k in range(4):  # every corner turns left: convex too
-        assert (signed_area(np.roll(corners, k, axis=1)[:, :3]) > 0).all()
+        assert (signed_area(np.roll(V[Q], k, axis=1)[:, :3]) > 0).all()
     assert signed_area(V[polygon]) > 0
     np.testing.assert_allclose(np.ptp(np.linalg.norm(V[polygon], axis=1)), 0, atol=1e-15)
     assert (V[:, 2] == 0).all()
@@ -215,14 +197,22 @@ def test_four_sides_give_a_piece_of_the_square_lattice():
     np.testing.assert_allclose(signed_area(V[polygon]), 1)
 
 
-@pytest.mark.parametrize("bad", [(2, 1), (6, 0), (-1, 3)])
-def test_a_polygon_without_rings_or_with_two_sides_is_refused(bad):
-    with pytest.raises(ValueError, match=r"(sides|rings) = -?\d: a whole number, [31] or"):
-        mesh.polygon_rings(*bad)
+@pytest.mark.parametrize(
+    ("make", "size"),
+    [(mesh.grid_quads, size) for size in ((0, 1), (1, 0), (-2, 3), (float("nan"), 1), (2.5, 1))]
+    + [(mesh.polygon_rings, size) for size in ((2, 1), (6, 0), (-1, 3))],
+)
+def test_sizes_that_make_no_mesh_are_refused(make, size):
+    with pytest.raises(ValueError, match=r"(m|n|sides|rings) = \S+: a whole number, [13] or"):
+        make(*size)
 
 
 PLANE, GRID = positions(2, 2), slow_grid(2, 2)
 HOLE = np.where(np.arange(9) == 5, np.nan, 0)[:, None]
+
+
+FLAPS = [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]]
+OVER = np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]])
 BAD = {
     "an empty list": (PLANE, [], "the mesh has no faces"),
     "triangles": (PLANE, GRID[:, :3], "the faces are triangles: quads are wanted"),
@@ -237,16 +227,8 @@ BAD = {
     "plane vertices": (PLANE[:, :2], GRID, r"V has the shape \(9, 2\)"),
     "complex vertices": (PLANE * 1j, GRID, "type complex128: .* three real coordinates"),
     "words": (PLANE.astype(str), GRID, "three real coordinates"),
-    "three faces at an edge": (
-        PLANE,
-        [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]],
-        "edge 0-1 belongs to more than two faces",
-    ),
-    "a face upside down": (
-        PLANE,
-        np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]]),
-        "faces . and 2 are oriented against each other|faces 2 and . are oriented",
-    ),
+    "three faces at an edge": (PLANE, FLAPS, "edge 0-1 belongs to more than two faces"),
+    "a face upside down": (PLANE, OVER, "faces (. and 2|2 and .) are oriented against each other"),
     "a face twice": (PLANE, np.concatenate([GRID, GRID[:1]]), "more than two|against"),
 }
 
@@ -298,7 +280,7 @@ def test_boundary_loops_run_through_every_boundary_edge_once(name, count):
     assert {pair for loop in loops for pair in pairwise([*loop, loop[0]])} == boundary_edges(Q)
 
 
-def test_boundary_loops_have_the_mesh_on_their_left():
+def test_boundary_loops_have_the_mesh_on_their_left_and_must_not_touch():
     (loop,) = mesh.boundary_loops(slow_grid(3, 4))
     assert signed_area(positions(3, 4)[loop]) == 12
     V = annulus_positions(9, 2)
@@ -308,9 +290,6 @@ def test_boundary_loops_have_the_mesh_on_their_left():
     loops = mesh.boundary_loops(np.delete(slow_grid(3, 3), 4, axis=0))
     assert sorted(signed_area(positions(3, 3)[loop]) for loop in loops) == [-1, 9]
     assert mesh.boundary_loops(rolled(3, 4, both=True)) == []
-
-
-def test_boundary_loops_that_touch_are_refused():
     with pytest.raises(ValueError, match="two boundary loops touch at vertex 4"):
         mesh.boundary_loops(slow_grid(2, 2)[[0, 3]])
 
@@ -326,14 +305,10 @@ def test_is_labelled_sees_one_quarter_turn_and_ignores_half_turns():
 
 
 @given(seeds, sizes, sizes)
-def test_is_labelled_agrees_with_sets_of_edges_for_random_quarter_turns(seed, m, n):
-    Q = shuffled(slow_grid(m, n), np.random.default_rng(seed), flips=False)
-    assert mesh.is_labelled(Q) == labels_agree(Q)
-
-
-@given(seeds, sizes, sizes)
 def test_label_puts_a_shuffled_grid_in_order(seed, m, n):
     rng = np.random.default_rng(seed)
+    turned = shuffled(slow_grid(m, n), rng, flips=False)
+    assert mesh.is_labelled(turned) == labels_agree(turned)
     Q = shuffled(slow_grid(m, n), rng)[rng.permutation(m * n)]
     before = Q.copy()
     done = mesh.label(Q)
@@ -346,47 +321,36 @@ def test_label_puts_a_shuffled_grid_in_order(seed, m, n):
     assert (areas == areas[0]).all()
 
 
-def test_label_keeps_the_first_face_of_each_component():
-    Q = np.concatenate([slow_grid(2, 2), np.roll(slow_grid(2, 2), 1, axis=1) + 9])
-    Q[[1, 6]] = np.roll(Q[[1, 6]], 1, axis=1)
-    done = mesh.label(Q)
-    np.testing.assert_array_equal(done[[0, 4]], Q[[0, 4]])
-    assert labels_agree(done)
+TWO_PARTS = np.concatenate([slow_grid(2, 2), np.roll(slow_grid(2, 2), 1, axis=1) + 9])
 
 
 @pytest.mark.parametrize(
-    "Q",
-    [MESHES["annulus"], MESHES["torus"], star(6), *(mesh.polygon_rings(k, 3)[1] for k in (4, 8))],
+    ("Q", "parts"),
+    [(TWO_PARTS, [0, 4]), (MESHES["annulus"], [0]), (MESHES["torus"], [0]), (star(6), [0])]
+    + [(mesh.polygon_rings(sides, 3)[1], [0]) for sides in (4, 8)],
 )
-def test_label_puts_other_shuffled_meshes_in_order(Q):
-    done = mesh.label(shuffled(Q, np.random.default_rng(3)))
+def test_label_puts_other_meshes_in_order_and_keeps_the_first_face_of_each_part(Q, parts):
+    Q = shuffled(Q, np.random.default_rng(3))
+    done = mesh.label(Q)
+    np.testing.assert_array_equal(done[parts], Q[parts])
     assert labels_agree(done)
     assert len(half_edges(done)) == done.size
 
 
-@pytest.mark.parametrize("sides", [3, 5, 7])
-def test_label_refuses_an_odd_polygon_and_names_its_boundary_loop(sides):
-    _, Q, polygon = mesh.polygon_rings(sides, 2)
+@pytest.mark.parametrize("k", [3, 5, 7])
+def test_label_refuses_and_names_odd_polygons_odd_inner_vertices_and_moebius_strips(k):
+    _, Q, polygon = mesh.polygon_rings(k, 2)
     words = r"boundary loop through the vertices \[([\d, ]+)\]( \.\.\.)? has an odd sum"
     with pytest.raises(ValueError, match=words) as caught:
         mesh.label(Q)
-    assert set(named(caught)) <= set(polygon.tolist())
-    assert len(named(caught)) == min(sides, 6)
-
-
-@pytest.mark.parametrize("valence", [3, 5, 7])
-def test_label_refuses_an_odd_interior_vertex_and_names_it(valence):
-    Q = (star(valence) + 11) % (2 * valence + 1)  # the centre gets another number
-    centre = 11 % (2 * valence + 1)
-    with pytest.raises(ValueError, match=f"interior vertex {centre} has the odd valence {valence}"):
-        mesh.label(Q)
-
-
-@pytest.mark.parametrize("k", [3, 4, 7])
-def test_label_refuses_a_moebius_strip(k):
-    with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
-        mesh.label(moebius_strip(k))
-    assert set(named(caught)) == set(range(k))
+    assert set(named(caught)) <= set(polygon.tolist()) and len(named(caught)) == min(k, 6)
+    centre = 11 % (2 * k + 1)  # another number than 0
+    with pytest.raises(ValueError, match=f"interior vertex {centre} has the odd valence {k}"):
+        mesh.label((star(k) + 11) % (2 * k + 1))
+    for faces in (k, k + 1):
+        with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
+            mesh.label(moebius_strip(faces))
+        assert set(named(caught)) == set(range(faces))
 
 
 def test_label_refuses_a_handle_that_glues_u_to_v_and_names_a_loop_of_faces():
@@ -444,12 +408,6 @@ def test_the_four_families_run_through_every_edge_and_diagonal_once(name):
         assert set(found) == pairs
 
 
-@pytest.mark.parametrize("function", [mesh.polylines, mesh.diagonal_meshes])
-def test_curves_and_diagonal_meshes_need_labels(function):
-    with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
-        function(mesh.polygon_rings(5, 1)[1])
-
-
 def test_black_faces_of_spatial_quads_are_parallelograms_along_the_diagonals():
     V, Q = bumpy(4, 3), slow_grid(4, 3)
     board = mesh.checkerboard(V, Q)
@@ -460,7 +418,7 @@ def test_black_faces_of_spatial_quads_are_parallelograms_along_the_diagonals():
     np.testing.assert_allclose(p2 - p1, (V[Q[:, 2]] - V[Q[:, 0]]) / 2, atol=1e-15)
 
 
-def test_white_faces_surround_the_inner_vertices_counter_clockwise():
+def test_white_faces_surround_the_inner_vertices_and_no_two_black_ones_share_an_edge():
     m, n = 4, 3
     board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
     corners = board.V[board.white]
@@ -469,13 +427,8 @@ def test_white_faces_surround_the_inner_vertices_counter_clockwise():
     centres = sorted(map(tuple, corners.mean(axis=1)[:, :2].tolist()))
     assert centres == [(i, j) for i in range(1, m) for j in range(1, n)]
     assert board.others == []
-
-
-def test_every_edge_has_one_midpoint_and_no_two_black_faces_share_an_edge():
-    m, n = 4, 3
-    board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
-    assert len(board.V) == m * (n + 1) + n * (m + 1)
-    assert len({tuple(p) for p in board.V.tolist()}) == len(board.V)
+    midpoints = {tuple(p) for p in board.V.tolist()}
+    assert len(board.V) == len(midpoints) == m * (n + 1) + n * (m + 1)
     assert set(board.black.ravel()) == set(range(len(board.V)))
     assert len(boundary_edges(board.black)) == 4 * m * n
     assert {(b, a) for a, b in half_edges(board.white)} <= set(half_edges(board.black))
@@ -542,7 +495,10 @@ def test_diagonal_meshes_of_a_sheared_grid_have_the_swapped_shape():
             np.testing.assert_allclose(found, wanted, rtol=1e-13)
 
 
-def test_a_single_quad_has_no_diagonal_faces_and_an_odd_torus_no_diagonal_meshes():
+def test_curves_and_diagonal_meshes_need_labels_diagonal_meshes_a_chessboard_colouring():
+    for function in (mesh.polylines, mesh.diagonal_meshes):
+        with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
+            function(mesh.polygon_rings(5, 1)[1])
     assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
     with pytest.raises(ValueError, match="no chessboard colouring"):
         mesh.diagonal_meshes(rolled(3, 4, both=True))
@@ -561,17 +517,10 @@ def test_triangles_of_many_quads_come_in_pairs_cut_along_the_shorter_diagonal():
             assert set(pair[0]) & set(pair[1]) == set(ends[0].tolist())
 
 
-def tube():
-    """36 quads around a tube, all with equal diagonals."""
-    angle, k = 2 * np.pi * np.arange(36) / 36, np.arange(36)
-    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    after = np.roll(k, -1)
-    return np.concatenate([ring, ring + np.array([0, 0, 0.3])]), np.stack(
-        [k + 36, k, after, after + 36], 1
-    )
+RING = annulus_positions(36, 1), rolled(36, 1)
 
 
-@pytest.mark.parametrize(("net", "count"), [(mesh.polygon_rings(6, 8)[:2], 48), (tube(), 36)])
+@pytest.mark.parametrize(("net", "count"), [(mesh.polygon_rings(6, 8)[:2], 48), (RING, 36)])
 def test_equal_diagonals_are_cut_along_v1_v3_whatever_their_last_digits_are(net, count):
     V, Q = net
     d1, d2 = (np.linalg.norm(V[Q[:, k + 2]] - V[Q[:, k]], axis=1) for k in (0, 1))
