@@ -215,8 +215,8 @@ def test_the_nets_of_the_drawing():
 GRID = mesh.grid_quads(4, 3)
 
 
-I, J = np.divmod(mesh.grid_quads(6, 5), 6)
-TORUS = I % 6 * 5 + J % 5
+ROW, COLUMN = np.divmod(mesh.grid_quads(6, 5), 6)
+TORUS = ROW % 6 * 5 + COLUMN % 5
 HELD = {"handles": ([1, 2], [0, 1])}
 
 
