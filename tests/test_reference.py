@@ -10,7 +10,12 @@ from inetlib import moebius, reference, surfaces
 from inetlib.surfaces import CATENOID, CYLINDER, SPHERE
 
 TAU = 2 * np.pi
+
+
 TURN = Rotation.from_rotvec([0.4, -0.7, 1.1])
+ROUND = SPHERE.point, (0, TAU), (-1, 1)
+
+
 RNG = np.random.default_rng()
 
 
@@ -261,25 +266,20 @@ def test_feet_of_points_over_a_valley_do_not_hang_on_rounding():
     np.testing.assert_allclose(norm(ends - known[2])[:, 0], np.minimum(s, 1 - s), atol=1e-11)
 
 
-def test_no_boundary_is_an_error_that_says_so():
-    assert reference.mesh(*grid(2, 2)).has_boundary
-    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
+def test_bad_points_and_surfaces_without_boundary_are_refused_and_no_points_have_no_feet():
+    square, sphere = reference.mesh(*grid(2, 2)), reference.parametric(*ROUND)
+    for answer in (square.closest, square.boundary):
+        with pytest.raises(ValueError, match=r"points have the shape \(3,\)"):
+            answer(np.zeros(3))
+        with pytest.raises(ValueError, match="point 1 has a coordinate that is not a finite"):
+            answer([[0, 0, 0], [0, np.nan, 0]])
+    for answer in (square.closest, square.boundary, sphere.closest):
+        assert all(X.shape == (0, 3) for X in answer(np.zeros((0, 3))))
+    assert square.has_boundary
     for R in (reference.mesh(*ball(20)), sphere):
         assert not R.has_boundary
         with pytest.raises(ValueError, match=r"no boundary: it is closed, or no `reference\.mesh`"):
             R.boundary(np.zeros((1, 3)))
-
-
-@pytest.mark.parametrize("ask", ["closest", "boundary"])
-def test_bad_points_are_refused_and_no_points_have_no_feet(ask):
-    answer = getattr(reference.mesh(*grid(2, 2)), ask)
-    with pytest.raises(ValueError, match=r"points have the shape \(3,\)"):
-        answer(np.zeros(3))
-    with pytest.raises(ValueError, match="point 1 has a coordinate that is not a finite"):
-        answer([[0, 0, 0], [0, np.nan, 0]])
-    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
-    for X in (*answer(np.zeros((0, 3))), *sphere.closest(np.zeros((0, 3)))):
-        assert X.shape == (0, 3)
 
 
 def test_bad_meshes_and_surfaces_are_refused():
@@ -351,12 +351,10 @@ def test_feet_are_orthogonal_and_the_nearest_of_all(name):
     X = surface.point(RNG.uniform(0, TAU, 300), RNG.uniform(-1, 1, 300))
     P = X + off * RNG.uniform(-1, 1, X.shape)
     feet, normals = R.closest(P)
-    away = P - feet
-    assert norm(np.cross(away, normals)).max() < 1e-12 * R.diagonal
+    assert norm(np.cross(P - feet, normals)).max() < 1e-12 * R.diagonal
     np.testing.assert_allclose(norm(normals), 1, rtol=1e-14)
-    grid = np.meshgrid(np.linspace(0, TAU, 800), np.linspace(-1.3, 1.3, 500))
-    near, _ = cKDTree(surface.point(*grid).reshape(-1, 3)).query(P)
-    far = norm(away)[:, 0]
+    many = surface.point(*np.meshgrid(np.linspace(0, TAU, 800), np.linspace(-1.3, 1.3, 500)))
+    near, far = cKDTree(many.reshape(-1, 3)).query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-14).all()
     assert (near - far).max() < 1e-2
 
@@ -366,21 +364,18 @@ def test_a_surface_that_is_not_finite_beyond_its_domain_ends_there():
         inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
         return np.where(inside[..., None], np.stack([u, v, u * u - v * v], axis=-1), np.nan)
 
-    R = reference.parametric(saddle, (0, 1), (0, 1))
     P = RNG.uniform(-0.3, 1.3, (400, 3)) * [1, 1, 0.5]
-    feet, normals = R.closest(P)
+    feet, normals = reference.parametric(saddle, (0, 1), (0, 1)).closest(P)
     assert feet[:, :2].min() == 0
     assert feet[:, :2].max() == 1
     many = saddle(*np.meshgrid(np.linspace(0, 1, 501), np.linspace(0, 1, 501))).reshape(-1, 3)
-    near, _ = cKDTree(many).query(P)
-    far = norm(P - feet)[:, 0]
+    near, far = cKDTree(many).query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-12).all()
     assert (near - far).max() < 2e-3
-    inner = (feet[:, :2] > 0).all(axis=1) & (feet[:, :2] < 1).all(axis=1)
+    inner = ((feet[:, :2] > 0) & (feet[:, :2] < 1)).all(axis=1)
     assert inner.sum() > 100
     assert norm(np.cross(P - feet, normals))[inner].max() < 1e-6  # rougher near the edge
-    x, y = feet[:, 0], feet[:, 1]
-    wanted = np.stack([-2 * x, 2 * y, 0 * x + 1], axis=1)
+    wanted = feet * [-2, 2, 0] + [0, 0, 1]
     np.testing.assert_allclose(np.abs(dot(normals, wanted / norm(wanted))), 1, rtol=1e-6)
 
 
