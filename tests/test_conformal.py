@@ -60,13 +60,10 @@ def test_origin_edge_and_direction_are_kept(theta, theta0, origin, edge, directi
     np.testing.assert_allclose(z, z[:1, :] + z[:, :1] - origin, atol=1e-12 * (9 + 9 * abs(v)))
 
 
-def test_theta_parallelograms_have_the_height_sin_theta_over_lam():
+def test_cells_have_the_height_sin_theta_over_lam_and_compensated_ones_tend_to_them():
     z = conformal.sheared_grid(T, T, 1, 1)  # not lam sin theta, as printed in App. A.2
     golden = (1 + 5**0.5) / 2
     assert z[0, 1].imag == pytest.approx(np.sin(T) / golden, rel=1e-14)
-
-
-def test_an_exact_compensation_tends_to_the_plain_grid():
     plain = conformal.sheared_grid(T, T0, 1, 1, edge=1e-3)
     for kappa in (1, -1, 2 + 1j):
         bent = conformal.sheared_grid(T, T0, 1, 1, edge=1e-3, kappa=kappa)

@@ -97,15 +97,12 @@ def test_the_plane_is_covered_by_the_sheared_grid_itself():
     assert (net.report.converged, net.report.message) == (False, "not optimised")
 
 
-def test_every_quad_is_inside_the_outline():
+def test_every_quad_is_inside_and_two_rooms_with_a_narrow_door_give_one_sound_piece():
     V = np.stack(polar(0.999, TAU * np.arange(60) / 60, np.zeros(60)), axis=1)
     F = np.stack([np.arange(60), np.roll(np.arange(60), -1), np.full(60, 60)], axis=1)
     net = cover((np.concatenate([V, np.zeros((1, 3))]), F), (60, 60), count=200)
     assert np.linalg.norm(net.V, axis=1).max() < 1
     assert net.report.covered > 0.8
-
-
-def test_two_rooms_with_a_narrow_door_give_one_sound_piece():
     rooms = sheet(60, 10, lambda u, v: (4 * u - 2, (v - 0.5) * (0.06 + (4 * u - 2) ** 2), 0 * u))
     net = cover(rooms, (60, 60), count=150)
     assert len(np.unique(mesh.pairs(net.Q) // 4)) == len(net.Q)

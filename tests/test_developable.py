@@ -145,7 +145,7 @@ def test_a_straight_line_becomes_the_helix_in_closed_form():
     np.testing.assert_allclose(points, np.stack(wanted, axis=-1), atol=1e-14)
 
 
-def test_roll_coordinates_take_symbols():
+def test_roll_coordinates_take_symbols_and_tangent_differentiates_to_twelve_digits():
     x, y, k = sympy.symbols("x y k", positive=True)
     X = sympy.Matrix(developable.roll_coordinates(x, y, k))
     J = X.jacobian([x, y])
@@ -153,6 +153,10 @@ def test_roll_coordinates_take_symbols():
     values = {x: 0.3, y: 0.4, k: 2}
     found = [float(c.subs(values)) for c in X]
     np.testing.assert_allclose(found, developable.roll(0.3 + 0.4j, 2), rtol=1e-14)
+    found = developable.tangent(lambda z: developable.roll(z, 0.8), GRID, 2 + 1j)
+    turn = 0.8 * GRID.real
+    wanted = np.stack([2 * np.cos(turn), 1 + 0 * turn, 2 * np.sin(turn)], axis=-1)
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
 
 
 @pytest.mark.parametrize("gamma", [0.4, 1.3, 2.2])
@@ -201,7 +205,7 @@ def test_the_rectifying_developable_of_a_helix_is_its_cylinder(pitch):
     np.testing.assert_allclose(kappa, 0.7 / (0.7**2 + pitch**2), rtol=1e-13)
 
 
-def test_the_x_axis_becomes_the_curve_and_its_normal_is_that_of_the_surface():
+def test_the_x_axis_becomes_the_curve_with_the_surface_normal_and_rulings_stay_straight():
     s = np.linspace(0.5, SPACE.length - 0.5, 30)
     np.testing.assert_allclose(developable.rectifying(s + 0j, SPACE), SPACE.point(s), atol=1e-12)
     x, y = partials(lambda z: developable.rectifying(z, SPACE), s + 0j)
@@ -210,6 +214,12 @@ def test_the_x_axis_becomes_the_curve_and_its_normal_is_that_of_the_surface():
     normal, bent = np.cross(x, y), bent / np.linalg.norm(bent, axis=-1, keepdims=True)
     assert np.abs(np.cross(normal, bent)).max() < 1e-5
     assert (dot(normal, bent) < 0).all()  # T x B = -N
+    s, reach = 4.0, np.linspace(-2, 2, 9)
+    cot = developable.darboux(SPACE, SPACE.parameter(s))[0]
+    line = developable.rectifying(s + reach * (cot + 1j), SPACE)
+    steps = np.diff(line, axis=0)
+    np.testing.assert_allclose(steps, np.broadcast_to(steps[0], steps.shape), atol=1e-11)
+    assert np.linalg.norm(steps[0]) == pytest.approx(abs(cot + 1j) / 2, rel=1e-12)
 
 
 def test_darboux_agrees_with_frenet_by_differences():
@@ -223,15 +233,6 @@ def test_darboux_agrees_with_frenet_by_differences():
     np.testing.assert_allclose(change[0], rate, atol=1e-6)
     np.testing.assert_allclose(change[2], kappa[:, None] * N, atol=1e-6)
     np.testing.assert_allclose(change[3], -(cot * kappa)[:, None] * N, atol=1e-6)
-
-
-def test_rulings_stay_straight():
-    s, reach = 4.0, np.linspace(-2, 2, 9)
-    cot = developable.darboux(SPACE, SPACE.parameter(s))[0]
-    line = developable.rectifying(s + reach * (cot + 1j), SPACE)
-    steps = np.diff(line, axis=0)
-    np.testing.assert_allclose(steps, np.broadcast_to(steps[0], steps.shape), atol=1e-11)
-    assert np.linalg.norm(steps[0]) == pytest.approx(abs(cot + 1j) / 2, rel=1e-12)
 
 
 def reaches(z, curve):
@@ -332,13 +333,6 @@ def test_a_circle_by_a_strange_parameter():
     np.testing.assert_allclose(curve.point(s), wanted, atol=1e-12)
     s = np.linspace(0.1, SPACE.length - 0.1, 50)
     np.testing.assert_allclose(SPACE.integral(SPACE.parameter(s)), s, atol=1e-12)
-
-
-def test_tangent_differentiates_to_twelve_digits():
-    found = developable.tangent(lambda z: developable.roll(z, 0.8), GRID, 2 + 1j)
-    turn = 0.8 * GRID.real
-    wanted = np.stack([2 * np.cos(turn), 1 + 0 * turn, 2 * np.sin(turn)], axis=-1)
-    np.testing.assert_allclose(found, wanted, atol=1e-12)
 
 
 @given(st.floats(0.35, 2.8), st.floats(0.35, 2.8), st.floats(-3, 3))

@@ -273,16 +273,13 @@ def test_two_folded_faces_far_apart_are_both_found_and_none_on_a_torus():
     assert measure.quality(V, i % 12 * 9 + j % 9).flips == 0
 
 
-def test_planarity_is_the_distance_of_the_diagonals_over_their_mean_length():
+def test_planarity_area_ratio_and_aspect_by_hand():
     h = 0.3  # diagonals of length sqrt 2 at the heights 0 and h
     V, Q = quad((0, 1, 0), (0, 0, h), (1, 0, 0), (1, 1, h))
     assert measure.quality(V, Q).planarity == pytest.approx(h / 2**0.5, rel=1e-14)
     V, Q = quad((0, 2, 0), (0, 0, h), (2, 0, 0), (1, 1, h))  # lengths 2 sqrt 2 and sqrt 2
     assert measure.quality(V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
     assert measure.quality(5 * V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
-
-
-def test_area_ratio_and_aspect_are_those_of_the_worst_face():
     found = measure.quality(*sheared(3, 2, v=(0, 1, 0)))
     assert (found.flips, found.flipped.tolist()) == (0, [])
     assert found[2:] == pytest.approx((1, 1, 0))
@@ -313,16 +310,13 @@ def test_parallel_plane_pieces_are_as_far_apart_as_they_are():
             measure.hausdorff(V, Q, V, Q, bad)
 
 
-def test_a_part_lies_on_the_whole_but_not_the_whole_on_the_part():
+def test_a_part_lies_on_the_whole_not_the_whole_on_the_part_and_refining_finds_the_ground():
     V, Q = sheared(6, 6, v=(0, 1, 0))
     W, R = sheared(7, 2, u=(0.3, 0, 0), v=(0, 1.5, 0))  # 2.1 x 3, its vertices off the grid
     there, back = measure.hausdorff(W, R, V, Q)
     assert there == pytest.approx(0, abs=1e-15)
     assert back == pytest.approx(np.hypot(6 - 2.1, 6 - 3), rel=1e-14)
     assert measure.hausdorff(V, Q, W, R) == (back, there)
-
-
-def test_refining_finds_the_ground_below_a_roof():
     """Four vertices of the ground lie on the roof; only points between them are below it."""
     V, Q = sheared(1, 1, u=(2, 0, 0), v=(0, 3, 0))
     W, R = sheared(2, 1, v=(0, 3, 0))

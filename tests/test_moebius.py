@@ -75,7 +75,7 @@ def test_any_shape_of_points_and_any_multiple_of_the_order():
     np.testing.assert_allclose(moebius.apply(-FAR, V), moebius.apply(FAR, V), rtol=1e-14)
 
 
-def test_cross_ratios_of_distances_are_kept():
+def test_cross_ratios_are_kept_and_the_derivative_is_a_multiple_of_an_orthogonal_matrix():
     def cross_ratios(P):
         a, b, c, d = P.reshape(4, 3, 3)
         ab, cd, ad, cb = np.linalg.norm([a - b, c - d, a - d, c - b], axis=2)
@@ -83,6 +83,12 @@ def test_cross_ratios_of_distances_are_kept():
 
     found = cross_ratios(moebius.apply(FAR, V))
     np.testing.assert_allclose(found, cross_ratios(V), rtol=1e-11)
+    for x in V[:4]:
+        columns = [moebius.apply(FAR, x + h) - moebius.apply(FAR, x - h) for h in 1e-5 * np.eye(3)]
+        D = np.stack(columns, axis=-1) / 2e-5
+        scale = np.cbrt(abs(np.linalg.det(D)))
+        np.testing.assert_allclose(D.T @ D / scale**2, np.eye(3), atol=1e-8)
+        assert np.linalg.det(D) * np.linalg.det(FAR) > 0
 
 
 def test_spheres_go_to_spheres_and_circles_to_circles():
@@ -98,15 +104,6 @@ def test_spheres_go_to_spheres_and_circles_to_circles():
     spread = np.linalg.svd(flat - flat.mean(axis=0), compute_uv=False)
     assert spread[1] > 0.05
     assert spread[2] < 1e-12
-
-
-def test_the_derivative_is_a_multiple_of_an_orthogonal_matrix():
-    for x in V[:4]:
-        columns = [moebius.apply(FAR, x + h) - moebius.apply(FAR, x - h) for h in 1e-5 * np.eye(3)]
-        D = np.stack(columns, axis=-1) / 2e-5
-        scale = np.cbrt(abs(np.linalg.det(D)))
-        np.testing.assert_allclose(D.T @ D / scale**2, np.eye(3), atol=1e-8)
-        assert np.linalg.det(D) * np.linalg.det(FAR) > 0
 
 
 def test_the_pole_of_a_composition_is_found_and_a_similarity_has_none():

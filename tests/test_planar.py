@@ -151,7 +151,7 @@ def test_an_outline_is_followed_and_the_distance_is_true():
     assert net.distance == pytest.approx(apart, abs=1e-4)
 
 
-def test_an_outline_that_a_net_has_is_met():
+def test_outlines_that_a_net_has_are_met_two_of_an_annulus_and_functions_too():
     flat = conformal.sheared_grid(T, T0, 12, 8, 1, 0.05)
     z = flat**2
     ends = flat[[0, 12, 12, 0], [0, 0, 8, 8]]
@@ -165,9 +165,6 @@ def test_an_outline_that_a_net_has_is_met():
         assert net.distance < most
         require_exact(net, Q, (60, 45))
     assert planar.planar_net(Q, T, T0, boundary=rim).distance < 0.02
-
-
-def test_two_outlines_of_an_annulus_and_a_function():
     z = ring(40, 10, planar_ratio(40, T, T0))
     loops = [np.arange(40) * 11, np.arange(40) * 11 + 10]
     pairs = [(loops[0], lambda t: np.exp(2j * np.pi * t)), (loops[1], abs(z[10]) * CIRCLE)]

@@ -175,7 +175,7 @@ def test_mercator_is_the_closed_form(profile, closed):
     np.testing.assert_array_equal(t_of_w(np.array([-1.0, 99.0])), [profile.start, profile.stop])
 
 
-def test_mercator_of_a_spline_is_the_quadrature_span_by_span():
+def test_splines_pass_through_their_points_and_their_mercator_is_the_quadrature():
     rng = np.random.default_rng(5)
     profile = surfaces.spline_profile(np.stack([rng.uniform(0.6, 1.4, 7), np.arange(7.0)], axis=1))
     radius, height = profile.radius.derivative(), profile.height.derivative()
@@ -189,6 +189,15 @@ def test_mercator_of_a_spline_is_the_quadrature_span_by_span():
     assert w_of_t(profile.stop) == pytest.approx(total, abs=1e-8)
     t = np.linspace(0, profile.stop, 99)
     np.testing.assert_allclose(t_of_w(w_of_t(t)), t, atol=1e-10)
+    t = np.linspace(-1.2, 1.2, 41)
+    points = np.stack([np.cos(t), np.sin(t)], axis=1)
+    profile = surfaces.spline_profile(points)
+    knots = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    np.testing.assert_allclose(profile.radius(knots), points[:, 0], atol=1e-14)
+    s = np.linspace(0, profile.stop, 500)
+    np.testing.assert_allclose(np.hypot(profile.radius(s), profile.height(s)), 1, atol=1e-6)
+    w_of_t, _ = surfaces.mercator(profile)
+    assert w_of_t(profile.stop) == pytest.approx(2 * np.arctanh(np.sin(1.2)), abs=1e-5)
 
 
 def test_the_named_profiles_can_be_used_as_they_are():
@@ -210,18 +219,6 @@ def test_revolve_is_eq_14():
     turned = surfaces.rotational(lambda t: (2 + np.cos(t), 0, np.sin(t))).point(*GRID)
     torus = surfaces.revolve(surfaces.torus_profile(2, 1), GRID[1], GRID[0])
     np.testing.assert_allclose(turned, torus, atol=1e-15)
-
-
-def test_a_spline_passes_through_its_points_and_comes_near_the_curve():
-    t = np.linspace(-1.2, 1.2, 41)
-    points = np.stack([np.cos(t), np.sin(t)], axis=1)
-    profile = surfaces.spline_profile(points)
-    knots = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    np.testing.assert_allclose(profile.radius(knots), points[:, 0], atol=1e-14)
-    s = np.linspace(0, profile.stop, 500)
-    np.testing.assert_allclose(np.hypot(profile.radius(s), profile.height(s)), 1, atol=1e-6)
-    w_of_t, _ = surfaces.mercator(profile)
-    assert w_of_t(profile.stop) == pytest.approx(2 * np.arctanh(np.sin(1.2)), abs=1e-5)
 
 
 def screw(pitch, profile=VASE):
