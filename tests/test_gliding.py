@@ -1,6 +1,7 @@
 """Fig. 9, columns 2 and 4: nets that glide on their surfaces, judged by closed forms."""
 
 import io
+from functools import cache
 
 import numpy as np
 import PIL.Image
@@ -11,12 +12,8 @@ from inetlib import measure, plot, publish
 from inetlib.drawings import fig09, lighter
 
 PANELS = [f"{letter}{column}" for letter in "ABCDE" for column in (2, 4)]
+glides = cache(fig09.optimised)
 T = np.radians(45)  # of the conjugate surface
-
-
-@pytest.fixture(scope="module")
-def glides():
-    return fig09.optimised()
 
 
 def back_on_surface(panel, V):
@@ -61,8 +58,8 @@ def conjugate_defect(V):
 
 
 @pytest.mark.parametrize("panel", PANELS)
-def test_every_face_has_its_angles_by_the_textbook_formula(glides, panel):
-    g = glides[panel]
+def test_every_face_has_its_angles_by_the_textbook_formula(panel):
+    g = glides()[panel]
     a, b, c, d = (g.result.V[k] for k in g.Q.T)
     wanted = {"2": (80, 45), "4": (50, 50)}[panel[1]]
     for one, two, angle in ((c - a, d - b, wanted[0]), (c + d - a - b, d + a - b - c, wanted[1])):
@@ -76,8 +73,8 @@ def test_every_face_has_its_angles_by_the_textbook_formula(glides, panel):
 
 
 @pytest.mark.parametrize("panel", PANELS)
-def test_nets_that_go_around_are_closed_and_no_face_is_turned_over(glides, panel):
-    g = glides[panel]
+def test_nets_that_go_around_are_closed_and_no_face_is_turned_over(panel):
+    g = glides()[panel]
     edges = np.sort(np.stack([g.Q, np.roll(g.Q, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)
     around = panel[0] in "ABC"
@@ -92,8 +89,8 @@ def test_nets_that_go_around_are_closed_and_no_face_is_turned_over(glides, panel
 
 
 @pytest.mark.parametrize("panel", PANELS)
-def test_all_vertices_lie_on_the_surface_by_its_closed_form(glides, panel):
-    g, defect = glides[panel], DEFECTS[panel[0]]
+def test_all_vertices_lie_on_the_surface_by_its_closed_form(panel):
+    g, defect = glides()[panel], DEFECTS[panel[0]]
     for V in (g.start, g.result.V):
         assert np.abs(defect(*back_on_surface(panel, V).T)).max() < 1e-9
     assert np.abs(defect(*1.01 * back_on_surface(panel, g.start).T)).max() > 1e-3
@@ -101,13 +98,13 @@ def test_all_vertices_lie_on_the_surface_by_its_closed_form(glides, panel):
     assert moved > 0.01  # it did glide
 
 
-def test_distances_are_fractions_in_both_directions(glides):
-    rows = fig09.distances(glides)
+def test_distances_are_fractions_in_both_directions():
+    rows = fig09.distances(glides())
     assert [r.panel for r in rows] == PANELS
     assert [r.printed for r in rows[1::2]] == [1.959, 0.016, 38.593, 3.120, 9.464]
     assert all(r.printed is None for r in rows[::2])
     for r in rows:
-        g = glides[r.panel]
+        g = glides()[r.panel]
         swapped = measure.hausdorff(g.start, g.Q, g.result.V, g.Q)
         assert r[3:] == pytest.approx((swapped.back / g.diagonal, swapped.there / g.diagonal))
         moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
@@ -121,8 +118,8 @@ def pixels(figure):
 
 
 @pytest.mark.parametrize("panel", ["A2", "E4"])
-def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(glides, panel):
-    g = glides[panel]
+def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(panel):
+    g = glides()[panel]
     seen = []
     for change in (lambda scene: None, lighter.lighter):
         figure, axes = plot.canvas([["one"]], 3, 3)

@@ -238,7 +238,7 @@ def test_subnets_meet_at_the_angles_of_the_four_directions():
     assert np.array_equal(loxodrome.subnet(net, "u", "v")[1], net.Q)
 
 
-def test_subnets_use_the_edges_of_their_families():
+def test_subnets_use_the_edges_of_their_families_and_mirrored_ones_have_the_supplement():
     net = loxodrome.web(SURFACES["torus"], 1.2, 0.9, 10, n=6)
     chains = mesh.polylines(net.Q)._asdict()
     edges = {
@@ -249,9 +249,6 @@ def test_subnets_use_the_edges_of_their_families():
         Q = loxodrome.subnet(net, first, second)[1].tolist()
         assert {frozenset(quad[1:3]) for quad in Q} <= edges[first]
         assert {frozenset(quad[0:2]) for quad in Q} <= edges[second]
-
-
-def test_mirror_images_turn_theta0_into_its_supplement():
     net = loxodrome.web(SPHERE, 60 * DEG, 45 * DEG, 24)
     V, Q = loxodrome.subnet(net, "u", "v", mirror=True)
     off = measure.deviations(V, Q, 60 * DEG, 135 * DEG)

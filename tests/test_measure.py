@@ -317,7 +317,7 @@ def test_a_part_lies_on_the_whole_not_the_whole_on_the_part_and_refining_finds_t
     assert there == pytest.approx(0, abs=1e-15)
     assert back == pytest.approx(np.hypot(6 - 2.1, 6 - 3), rel=1e-14)
     assert measure.hausdorff(V, Q, W, R) == (back, there)
-    """Four vertices of the ground lie on the roof; only points between them are below it."""
+    # four vertices of the ground lie on the roof; only points between them are below it
     V, Q = sheared(1, 1, u=(2, 0, 0), v=(0, 3, 0))
     W, R = sheared(2, 1, v=(0, 3, 0))
     W[2:4, 2] = h = 0.75  # slopes 0.75 : 1, their normals (3/5, 0, 4/5)
