@@ -70,7 +70,7 @@ def test_cells_have_the_height_sin_theta_over_lam_and_compensated_ones_tend_to_t
         assert 1e-11 < abs(bent - plain).max() < 1e-8
 
 
-def test_quads_put_grid_point_i_j_at_vertex_i_times_n_plus_1_plus_j():
+def test_quads_put_point_i_j_at_vertex_i_times_n_plus_1_plus_j_and_complex_ratios_are_measured():
     z = np.array([[10 * i + 1j * j for j in range(4)] for i in range(3)])
     V, Q = conformal.quads(z)
     np.testing.assert_array_equal(V[1 * 4 + 3], [10, 3, 0])
@@ -78,9 +78,6 @@ def test_quads_put_grid_point_i_j_at_vertex_i_times_n_plus_1_plus_j():
     np.testing.assert_array_equal(V[Q[0]][:, :2], [[0, 1], [0, 0], [10, 0], [10, 1]])
     assert len(Q) == 6
     mesh.check(V, Q)
-
-
-def test_complex_ratios_are_the_measured_ratios_and_angles():
     rng = np.random.default_rng(4)
     z = np.add.outer(np.arange(5), 1j * np.arange(4)) + rng.uniform(-0.2, 0.2, (5, 4, 2)) @ [1, 1j]
     K, R = conformal.complex_ratios(z)
@@ -146,24 +143,13 @@ def test_images_under_1_over_z_approach_the_angles_with_the_square_of_the_mesh_s
 
 
 @given(point, point)
-def test_the_inversion_circle_passes_through_the_mapped_points(start, direction):
+def test_mapped_points_lie_on_the_inversion_circle_and_the_square_conic_which_is_a_parabola(
+    start, direction
+):
     assume(abs(direction) > 0.1 and abs(np.imag(np.conj(direction) * start)) > 0.05)
     centre, radius = conformal.inversion_circle(start, direction)
     mapped = 1 / (start + direction * np.linspace(-3, 3, 13))
     np.testing.assert_allclose(abs(mapped - centre), radius, rtol=1e-8)
-
-
-def test_inversion_circles_are_the_printed_ones():
-    A, B, k = sympy.symbols("A B k", positive=True)
-    circle = conformal.inversion_circle(sympy.I * A, sympy.Integer(1))
-    assert circle == (-sympy.I / (2 * A), 1 / (2 * A))
-    centre, radius = conformal.inversion_circle(B, 1 + sympy.I * k)
-    assert sympy.simplify(centre - (1 / (2 * B) + sympy.I / (2 * k * B))) == 0
-    assert sympy.simplify(radius**2 - (1 + k**2) / (4 * k**2 * B**2)) == 0
-
-
-@given(point, point)
-def test_mapped_points_satisfy_the_square_conic_which_is_a_parabola(start, direction):
     assume(abs(direction) > 0.1)
     conic = conformal.square_conic(start, direction)
     w = (start + direction * np.linspace(-2, 2, 9)) ** 2
@@ -174,6 +160,15 @@ def test_mapped_points_satisfy_the_square_conic_which_is_a_parabola(start, direc
     a, b, c, *_ = conic
     assert b**2 == pytest.approx(4 * a * c)
     assert a + c == pytest.approx(abs(direction) ** 4)
+
+
+def test_inversion_circles_are_the_printed_ones():
+    A, B, k = sympy.symbols("A B k", positive=True)
+    circle = conformal.inversion_circle(sympy.I * A, sympy.Integer(1))
+    assert circle == (-sympy.I / (2 * A), 1 / (2 * A))
+    centre, radius = conformal.inversion_circle(B, 1 + sympy.I * k)
+    assert sympy.simplify(centre - (1 / (2 * B) + sympy.I / (2 * k * B))) == 0
+    assert sympy.simplify(radius**2 - (1 + k**2) / (4 * k**2 * B**2)) == 0
 
 
 def test_square_conics_have_the_printed_coefficients():

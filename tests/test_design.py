@@ -109,7 +109,7 @@ def test_every_quad_is_inside_and_two_rooms_with_a_narrow_door_give_one_sound_pi
     assert len(mesh.boundary_loops(net.Q)) == 1  # raises where two quads touch at a vertex
 
 
-def test_quads_as_reference_large_coordinates_one_quad_and_extreme_angles():
+def test_large_coordinates_one_quad_extreme_angles_and_a_steep_bump():
     V, Q = sheet(15, 15, lambda u, v: (u, v, 0.3 * u * v))
     V = 1e4 * V + 1e5
     check_cover(cover((V, Q), (60, 45), count=100), (V, Q), (60, 45))
@@ -117,15 +117,12 @@ def test_quads_as_reference_large_coordinates_one_quad_and_extreme_angles():
     assert cover(surface, (60, 60), count=1).report.quads == 1
     for pair in ((150, 120), (35, 100)):
         check_cover(cover(surface, pair, count=300), surface, pair)
-
-
-BUMP = sheet(40, 40, lambda u, v: (u, v, 0.8 * np.exp(-30 * ((u - 0.5) ** 2 + (v - 0.5) ** 2))))
-
-
-def test_a_steep_bump_is_covered_after_steps_of_shape():
     net = cover(BUMP, (60, 60), count=800)
     check_cover(net, BUMP, (60, 60))
     assert net.report.size_ratio > 5
+
+
+BUMP = sheet(40, 40, lambda u, v: (u, v, 0.8 * np.exp(-30 * ((u - 0.5) ** 2 + (v - 0.5) ** 2))))
 
 
 @pytest.mark.parametrize(

@@ -84,7 +84,7 @@ def test_the_number_of_iterations_does_not_grow_with_the_grid(size, stretch):
     assert sparse.solve(A, f)[1] < 40
 
 
-def test_levels_double_and_end_at_the_grid():
+def test_levels_double_and_end_at_the_grid_and_splines_keep_cubics():
     for m, n in [(20, 20), (100, 60), (1000, 1000), (7, 1000), (2, 3), (45, 400)]:
         sizes = grids.levels(m, n)
         assert sizes[-1] == (m, n)
@@ -94,9 +94,6 @@ def test_levels_double_and_end_at_the_grid():
                 assert two == one or two in (2 * one, 2 * one - 1)
     assert grids.levels(25, 30) == [(25, 30)]
     assert grids.levels(25, 30, coarse=10) == [(13, 15), (25, 30)]
-
-
-def test_splines_keep_cubics():
     u, v = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 9), indexing="ij")
     fine_u, fine_v = np.meshgrid(np.linspace(0, 1, 12), np.linspace(0, 1, 17), indexing="ij")
 

@@ -417,19 +417,16 @@ def test_white_faces_surround_the_inner_vertices_and_no_two_black_ones_share_an_
     assert {(b, a) for a, b in half_edges(board.white)} <= set(half_edges(board.black))
 
 
-@pytest.mark.parametrize("valence", [3, 5, 6])
-def test_a_singular_vertex_gets_a_polygon_of_its_own(valence):
-    V, Q = star_positions(valence), star(valence)
-    board = mesh.checkerboard(V, shuffled(Q, np.random.default_rng(1), flips=False))
-    (polygon,) = board.others
-    assert board.white.shape == (0, 4)
-    found, wanted = board.V[polygon] @ [1, 1j, 0], V[1 : valence + 1] @ [0.5, 0.5j, 0]
-    assert len(found) == valence
-    np.testing.assert_allclose(np.abs(found[:, None] - wanted).min(axis=0), 0, atol=1e-12)
-    assert signed_area(board.V[polygon]) > 0
-
-
-def test_a_closed_surface_has_one_white_face_a_vertex_and_no_vertex_shared_only():
+def test_singular_vertices_get_polygons_and_closed_surfaces_one_white_face_a_vertex():
+    for valence in (3, 5, 6):
+        V, Q = star_positions(valence), star(valence)
+        board = mesh.checkerboard(V, shuffled(Q, np.random.default_rng(1), flips=False))
+        (polygon,) = board.others
+        assert board.white.shape == (0, 4)
+        found, wanted = board.V[polygon] @ [1, 1j, 0], V[1 : valence + 1] @ [0.5, 0.5j, 0]
+        assert len(found) == valence
+        np.testing.assert_allclose(np.abs(found[:, None] - wanted).min(axis=0), 0, atol=1e-12)
+        assert signed_area(board.V[polygon]) > 0
     V = np.random.default_rng(7).normal(size=(15, 3))
     board = mesh.checkerboard(V, rolled(4, 3, both=True))
     assert (len(board.black), len(board.white), len(board.V)) == (12, 12, 24)
@@ -437,13 +434,19 @@ def test_a_closed_surface_has_one_white_face_a_vertex_and_no_vertex_shared_only(
         mesh.checkerboard(V, two_cubes())
 
 
-@pytest.mark.parametrize("Q", [slow_grid(5, 4), rolled(6, 3), rolled(4, 6, both=True)])
-def test_edges_of_the_diagonal_meshes_are_face_diagonals(Q):
-    for found in mesh.diagonal_meshes(Q):
-        assert len(found) > 2
-        assert edges(found, (1, 3)) <= diagonals(Q, 0)
-        assert edges(found, (0, 2)) <= diagonals(Q, 1)
-        assert mesh.is_labelled(found)
+def test_edges_of_diagonal_meshes_are_face_diagonals_and_need_labels_and_a_colouring():
+    for Q in (slow_grid(5, 4), rolled(6, 3), rolled(4, 6, both=True)):
+        for found in mesh.diagonal_meshes(Q):
+            assert len(found) > 2
+            assert edges(found, (1, 3)) <= diagonals(Q, 0)
+            assert edges(found, (0, 2)) <= diagonals(Q, 1)
+            assert mesh.is_labelled(found)
+    assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
+    for function in (mesh.polylines, mesh.diagonal_meshes):
+        with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
+            function(mesh.polygon_rings(5, 1)[1])
+    with pytest.raises(ValueError, match="no chessboard colouring"):
+        mesh.diagonal_meshes(rolled(3, 4, both=True))
 
 
 @given(st.integers(2, 6), st.integers(2, 6))
@@ -478,16 +481,7 @@ def test_diagonal_meshes_of_a_sheared_grid_have_the_swapped_shape():
             np.testing.assert_allclose(found, wanted, rtol=1e-13)
 
 
-def test_curves_and_diagonal_meshes_need_labels_diagonal_meshes_a_chessboard_colouring():
-    for function in (mesh.polylines, mesh.diagonal_meshes):
-        with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
-            function(mesh.polygon_rings(5, 1)[1])
-    assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
-    with pytest.raises(ValueError, match="no chessboard colouring"):
-        mesh.diagonal_meshes(rolled(3, 4, both=True))
-
-
-def test_triangles_of_many_quads_come_in_pairs_cut_along_the_shorter_diagonal():
+def test_quads_are_cut_along_the_shorter_diagonal_triangles_kept_and_other_faces_refused():
     V, Q = bumpy(5, 4) * [1, 1, 0], slow_grid(5, 4)
     for shift in range(4):
         Q = np.roll(Q, shift, axis=1)
@@ -498,6 +492,14 @@ def test_triangles_of_many_quads_come_in_pairs_cut_along_the_shorter_diagonal():
         for quad, pair in zip(Q, T.reshape(-1, 2, 3).tolist(), strict=True):
             ends = sorted((quad[::2], quad[1::2]), key=lambda k: np.linalg.norm(V[k[1]] - V[k[0]]))
             assert set(pair[0]) & set(pair[1]) == set(ends[0].tolist())
+    np.testing.assert_array_equal(mesh.triangles(positions(1, 1), [[0, 2, 1]])[1], [[0, 2, 1]])
+    for faces, words in [
+        ([[0, 1, 2, 3, 4]], r"shape \(1, 5\): rows of three or four vertices"),
+        ([[0, 1, 4]], "face 0 names vertex 4: there are only 4 vertices"),
+        ([[0, 1, 1]], "face 0 uses a vertex twice"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            mesh.triangles(positions(1, 1), faces)
 
 
 RING = annulus_positions(36, 1), rolled(36, 1)
@@ -514,14 +516,3 @@ def test_equal_diagonals_are_cut_along_v1_v3_whatever_their_last_digits_are(net,
     for seed in range(5):
         noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal(V.shape)
         np.testing.assert_array_equal(mesh.triangles(V * noise, Q)[1], wanted)
-
-
-def test_triangles_stay_as_they_are_and_other_faces_are_refused():
-    np.testing.assert_array_equal(mesh.triangles(positions(1, 1), [[0, 2, 1]])[1], [[0, 2, 1]])
-    for faces, words in [
-        ([[0, 1, 2, 3, 4]], r"shape \(1, 5\): rows of three or four vertices"),
-        ([[0, 1, 4]], "face 0 names vertex 4: there are only 4 vertices"),
-        ([[0, 1, 1]], "face 0 uses a vertex twice"),
-    ]:
-        with pytest.raises(ValueError, match=words):
-            mesh.triangles(positions(1, 1), faces)

@@ -39,13 +39,25 @@ def test_inversions_are_their_definition_and_two_about_one_centre_scale(centre, 
     np.testing.assert_allclose(moebius.apply(M, V), wanted, rtol=1e-8, atol=1e-8)
 
 
-def test_the_sphere_of_inversion_stays_and_its_inside_goes_out():
+def test_the_sphere_of_inversion_stays_spheres_go_to_spheres_and_circles_to_circles():
     np.testing.assert_allclose(moebius.apply(moebius.inversion(), V), inverted(V, 0, 1))
     on = CENTRE + RADIUS * ON_SPHERE
     M = moebius.inversion(CENTRE, RADIUS)
     np.testing.assert_allclose(moebius.apply(M, on), on, atol=1e-13)
     inside = moebius.apply(M, CENTRE + 0.3 * (on - CENTRE))
     np.testing.assert_allclose(np.linalg.norm(inside - CENTRE, axis=1), RADIUS / 0.3)
+    mapped = moebius.apply(FAR, SHIFT + 0.9 * ON_SPHERE)
+    # |x|^2 - 2 a.x - b = 0: four unknowns, twelve points.
+    system = np.c_[2 * mapped, np.ones(12)]
+    *_, b = fit = np.linalg.lstsq(system, (mapped**2).sum(axis=1))[0]
+    residual = np.linalg.norm(mapped - fit[:3], axis=1) - np.sqrt(b + fit[:3] @ fit[:3])
+    np.testing.assert_allclose(residual, 0, atol=1e-11)
+    t = np.linspace(0, 6, 12)
+    circle = SHIFT + np.cos(t)[:, None] * TURN[0] + np.sin(t)[:, None] * TURN[1]
+    flat = moebius.apply(FAR, circle)
+    spread = np.linalg.svd(flat - flat.mean(axis=0), compute_uv=False)
+    assert spread[1] > 0.05
+    assert spread[2] < 1e-12
 
 
 def test_matrices_keep_the_lorentz_product_and_lifted_points_have_length_0():
@@ -89,21 +101,6 @@ def test_cross_ratios_are_kept_and_the_derivative_is_a_multiple_of_an_orthogonal
         scale = np.cbrt(abs(np.linalg.det(D)))
         np.testing.assert_allclose(D.T @ D / scale**2, np.eye(3), atol=1e-8)
         assert np.linalg.det(D) * np.linalg.det(FAR) > 0
-
-
-def test_spheres_go_to_spheres_and_circles_to_circles():
-    mapped = moebius.apply(FAR, SHIFT + 0.9 * ON_SPHERE)
-    # |x|^2 - 2 a.x - b = 0: four unknowns, twelve points.
-    system = np.c_[2 * mapped, np.ones(12)]
-    *_, b = fit = np.linalg.lstsq(system, (mapped**2).sum(axis=1))[0]
-    residual = np.linalg.norm(mapped - fit[:3], axis=1) - np.sqrt(b + fit[:3] @ fit[:3])
-    np.testing.assert_allclose(residual, 0, atol=1e-11)
-    t = np.linspace(0, 6, 12)
-    circle = SHIFT + np.cos(t)[:, None] * TURN[0] + np.sin(t)[:, None] * TURN[1]
-    flat = moebius.apply(FAR, circle)
-    spread = np.linalg.svd(flat - flat.mean(axis=0), compute_uv=False)
-    assert spread[1] > 0.05
-    assert spread[2] < 1e-12
 
 
 def test_the_pole_of_a_composition_is_found_and_a_similarity_has_none():

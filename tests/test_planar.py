@@ -97,7 +97,7 @@ def test_known_nets_are_recovered_from_handles():
     assert len(held) == net.freedom
 
 
-def test_the_smoothest_net_has_the_least_energy_among_its_neighbours():
+def test_the_smoothest_net_has_the_least_energy_and_a_start_its_orthogonal_projection():
     Q, count = mesh.grid_quads(5, 4), 30
     A = planar.equations(Q, planar.factor_k(T, T0)).toarray()
     held, points = [0, 4, 25, 29], np.array([0, 0.5 + 0.3j, 1, 1.7 + 0.4j])
@@ -116,9 +116,6 @@ def test_the_smoothest_net_has_the_least_energy_among_its_neighbours():
     for direction in null.T:
         for step in (1e-4, -1e-4, 1e-4j):
             assert energy(grid + step * direction.reshape(6, 5)) > energy(grid)
-
-
-def test_a_start_gives_the_orthogonal_projection():
     V, Q, _ = mesh.polygon_rings(6, 3)
     net = planar.planar_net(Q, T, T0, start=V, smooth=0)
     A = planar.equations(Q, planar.factor_k(T, T0)).toarray()

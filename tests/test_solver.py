@@ -164,7 +164,7 @@ def test_fixed_vertices_stay_slow_ones_lag_and_the_rest_is_judged_honestly():
     assert lazy.converged and way[0] < 0.7 * way[1]
 
 
-def test_gliding_along_a_boundary_keeps_the_outline_closer():
+def test_gliding_keeps_the_outline_closer_and_vertices_on_a_sphere():
     V, Q = patch()
     surface = reference.mesh(V, Q)
     outer = np.unique(np.concatenate(mesh.boundary_loops(Q)))
@@ -176,9 +176,6 @@ def test_gliding_along_a_boundary_keeps_the_outline_closer():
         feet = surface.boundary(found.V[outer])[0]
         apart.append(np.linalg.norm(found.V[outer] - feet, axis=1).mean())
     assert apart[1] < 0.5 * apart[0]
-
-
-def test_vertices_on_a_sphere_stay_on_it():
     x, y = np.meshgrid(*2 * [np.linspace(-0.5, 0.5, 9)], indexing="ij")
     V = np.stack([x, y, np.sqrt(1 - x**2 - y**2)], axis=-1).reshape(-1, 3)
     Q = mesh.grid_quads(8, 8)

@@ -41,7 +41,7 @@ def generatrix(u):
     return 1 + u**2, u, 2 * u
 
 
-def test_a_darboux_surface_is_the_printed_product():
+def test_darboux_translational_rotational_and_helical_surfaces_by_hand():
     f, g, h, a, b, c = (sympy.Function(k) for k in "fghabc")
     A = sympy.Matrix(3, 3, lambda i, j: sympy.Function(f"A{i}{j}")(V))
     surface = surfaces.darboux(
@@ -49,9 +49,6 @@ def test_a_darboux_surface_is_the_printed_product():
     )
     expected = A * sympy.Matrix([f(U), g(U), h(U)]) + sympy.Matrix([a(V), b(V), c(V)])
     assert same(surface.coordinates(U, V), list(expected))
-
-
-def test_translational_rotational_and_helical_surfaces_by_hand():
     plane = surfaces.translation(lambda u: (u, 0, 0), lambda v: (v, 2 * v, 0))
     assert same(plane.coordinates(U, V), (U + V, 2 * V, 0))
     assert surfaces.first_form(plane, U, V) == (1, 1, 5)
@@ -135,9 +132,6 @@ def test_the_stereographic_image_of_the_sphere_is_the_exponential_map():
     u, v = np.meshgrid(np.linspace(-3, 3, 7), np.linspace(-2, 2, 6))
     image = moebius.stereographic(SPHERE.point(u, v))
     np.testing.assert_allclose(image, np.exp(v + 1j * u), rtol=1e-12)
-
-
-def test_the_stereographic_net_is_exact_on_the_compensated_grid():
     z = conformal.sheared_grid(*ASKED, 6, 9, edge=0.3, direction=1 - 1j, kappa=-1)
     points = SPHERE.point(z.real, z.imag)
     flat = measure.deviations(*conformal.quads(moebius.stereographic(points)), *ASKED)
