@@ -185,21 +185,11 @@ def test_grids_have_full_rank_flat_or_not(m, n):
         assert found.free == 3 * (m + 1) * (n + 1) - 2 * m * n
 
 
-def torus(m, n):
-    """A bumpy torus of m x n quads, closed both ways."""
-    i, j = (x.ravel() for x in np.mgrid[:m, :n])
-    a, b = 2 * np.pi * i / m, 2 * np.pi * j / n
-    r = 2 + (0.8 + 0.1 * np.cos(3 * a + b)) * np.cos(b)
-    V = np.stack([r * np.cos(a), r * np.sin(a), np.sin(b)], axis=1)
-    index = (i * n + (j + 1) % n, i * n + j)
-    right = (i + 1) % m
-    return V, np.stack([*index, right * n + j, right * n + (j + 1) % n], axis=1)
-
-
 def test_ring_meshes_webs_and_tori_have_full_rank():
     nets = [mesh.polygon_rings(6, 3)[:2], examples.polar_cap(7, 3)[:2]]
     nets.append(loxodrome.web(surfaces.sphere_profile(), 1.2, 1.0, 10, 6)[:2])
-    nets.append(torus(8, 6))
+    V, Q = loxodrome.torus_web(2, 0.8, 8, 6, 1)[:2]
+    nets.append((V + 0.05 * np.random.default_rng(1).normal(size=V.shape), Q))
     for V, Q in nets:
         assert freedom.count(V, Q).rank == 2 * len(Q)
     assert freedom.count(V, Q).free == len(V)  # closed: as many vertices as faces

@@ -1,7 +1,5 @@
 """`developable` against closed forms, fundamental forms by differences, and integrals."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 import sympy
@@ -88,16 +86,6 @@ def test_the_form_is_constant_while_control_points_move(part):
     moved = (1 - part) * CONTROL + part * np.array([[0, 0, 0], [2, 1, 0], [5, 4, -1], [5, 7, 4]])
     curve = bezier(moved)
     assert stretch(lambda z: developable.rectifying(z, curve), GRID[:3, :2] + 3.5 - 0.3j) < 1e-9
-
-
-@each_map
-def test_a_polyline_of_ever_shorter_chords_tends_to_the_length_of_the_edge(bend):
-    lengths = []
-    for count in (64, 128, 256):
-        points = bend(np.linspace(GRID[0, 0], GRID[1, 0], count + 1))
-        lengths.append(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    one, two = (4 * b - a for a, b in pairwise(lengths))
-    assert (16 * two - one) / 45 == pytest.approx(abs(GRID[1, 0] - GRID[0, 0]), abs=1e-10)
 
 
 @each_map
