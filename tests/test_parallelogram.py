@@ -346,7 +346,7 @@ def test_every_kind_of_number_gives_scalars(number):
     assert all(np.ndim(value) == 0 and isinstance(value, (int, float)) for value in results)
 
 
-def test_exact_ratios_give_exact_angles_and_exact_angles_exact_ratios():
+def test_exact_numbers_give_exact_ones_and_symbols_the_cosine_rule():
     lam, mu = sympy.sqrt(5), sympy.sqrt(2)
     theta, theta0 = parallelogram.angles(lam, mu)
     assert [sympy.simplify(sympy.tan(x)) for x in (theta, theta0)] == [2, 1]
@@ -355,16 +355,6 @@ def test_exact_ratios_give_exact_angles_and_exact_angles_exact_ratios():
     assert sympy.simplify(parallelogram.rho(lam, mu) - (1 + sympy.I) / 2) == 0
     for ratio in parallelogram.ratios(sympy.pi / 3, sympy.pi / 3):
         assert sympy.simplify(ratio.rewrite(sympy.log)) == sympy.GoldenRatio.expand(func=True)
-
-
-def test_exact_half_angles_have_the_printed_cosines():
-    lam, mu = sympy.sqrt(5), sympy.sqrt(2)
-    halves = parallelogram.half_angles(lam, mu)
-    for half, cosine in zip(halves, parallelogram.half_cosines(lam, mu), strict=True):
-        assert sympy.simplify(sympy.cos(half) - cosine) == 0
-
-
-def test_symbols_give_the_cosine_rule_back():
     lam, mu, theta = sympy.symbols("lam mu theta", positive=True)
     _, b, p, q = parallelogram.lengths(lam, mu)
     cos_theta, cos_theta0 = parallelogram.cosines(lam, mu)
@@ -373,6 +363,13 @@ def test_symbols_give_the_cosine_rule_back():
     p, q = parallelogram.diagonals(1, lam, theta)
     assert sympy.simplify(p**2 - (1 + lam**2 - 2 * lam * sympy.cos(theta))) == 0
     assert sympy.simplify(p**2 + q**2 - 2 * (1 + lam**2)) == 0
+
+
+def test_exact_half_angles_have_the_printed_cosines():
+    lam, mu = sympy.sqrt(5), sympy.sqrt(2)
+    halves = parallelogram.half_angles(lam, mu)
+    for half, cosine in zip(halves, parallelogram.half_cosines(lam, mu), strict=True):
+        assert sympy.simplify(sympy.cos(half) - cosine) == 0
 
 
 @pytest.mark.parametrize(
