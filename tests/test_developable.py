@@ -212,9 +212,8 @@ def test_the_x_axis_becomes_the_curve_with_the_surface_normal_and_rulings_stay_s
 
 def test_darboux_agrees_with_frenet_by_differences():
     s, h = np.linspace(1, SPACE.length - 1, 9), 1e-3
-    before, now, after = (
-        developable.darboux(SPACE, SPACE.parameter(s + k * h)) for k in (-1, 0, 1)
-    )
+    at = (SPACE.parameter(s + k * h) for k in (-1, 0, 1))
+    before, now, after = (developable.darboux(SPACE, t) for t in at)
     cot, rate, T, B, kappa = now
     N = np.cross(B, T)
     change = [(b - a) / (2 * h) for a, b in zip(before, after, strict=True)]

@@ -19,25 +19,21 @@ def quad(*corners):
     return np.array([[*c, 0][:3] for c in corners], dtype=float), ONE
 
 
-HAND = {  # corners, lam, mu, theta, theta0
-    "a rhombus inside": (
-        quad((0, 3), (0, 1), (4, 0), (5, 1)),  # d1 = (4, -3), d2 = (5, 0)
-        (1, 3, np.arctan2(3, 4), np.pi / 2),
-    ),
-    "a rectangle inside": (
-        quad((0, 2), (0, 0), (2, 0), (3, 3)),  # d1 = (2, -2), d2 = (3, 3)
-        (3 / 2, 1, np.pi / 2, np.arctan2(12, 5)),
-    ),
-    "a square inside": (
-        quad((0, 2), (0, 0.5), (2, 0), (2, 2.5)),  # d1 = (2, -2), d2 = (2, 2)
-        (1, 1, np.pi / 2, np.pi / 2),
-    ),
-    "a theta-parallelogram inside": (
-        quad((0, 1), (0, 0), (1, 1), (1.5, 7**0.5 / 2)),  # d1 = (1, 0), d2 = (3, sqrt 7) / 2
+HAND = {  # corners (above them d1 and d2); lam, mu, theta, theta0
+    # (4, -3) and (5, 0)
+    "a rhombus": (quad((0, 3), (0, 1), (4, 0), (5, 1)), (1, 3, np.arctan2(3, 4), np.pi / 2)),
+    # (2, -2) and (3, 3)
+    "a rectangle": (quad((0, 2), (0, 0), (2, 0), (3, 3)), (1.5, 1, np.pi / 2, np.arctan2(12, 5))),
+    # (2, -2) and (2, 2)
+    "a square": (quad((0, 2), (0, 0.5), (2, 0), (2, 2.5)), (1, 1, np.pi / 2, np.pi / 2)),
+    # (1, 0) and (3, sqrt 7) / 2
+    "a theta-parallelogram": (
+        quad((0, 1), (0, 0), (1, 1), (1.5, 7**0.5 / 2)),
         (2, 2, np.arccos(3 / 4), np.arccos(3 / 4)),
     ),
+    # (1, -1, 0) and (2, 1, 1)
     "a skew quad": (
-        quad((0, 1, 0), (0, 0, 1), (1, 0, 0), (2, 1, 2)),  # d1 = (1, -1, 0), d2 = (2, 1, 1)
+        quad((0, 1, 0), (0, 0, 1), (1, 0, 0), (2, 1, 2)),
         (3**0.5, (5 / 3) ** 0.5, np.arctan2(11**0.5, 1), np.arctan2(44**0.5, 4)),
     ),
 }
@@ -157,7 +153,7 @@ def test_turned_labels_and_mirror_images_give_reciprocals_and_moving_changes_not
 
 
 def test_reversing_the_orientation_breaks_eq_13():
-    V, Q = HAND["a theta-parallelogram inside"][0]
+    V, Q = HAND["a theta-parallelogram"][0]
     assert measure.theta_defect(V, Q).item() == pytest.approx(0, abs=1e-15)
     # the diagonals -d2 and -d1, with |d1| = 1, |d2| = 2, d1 d2 = 3/2: (1 - 4 - 3) / 5
     assert measure.theta_defect(V, Q[:, ::-1]).item() == pytest.approx(-6 / 5, rel=1e-14)

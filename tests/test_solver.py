@@ -133,10 +133,9 @@ def test_a_mesh_with_a_half_turn_keeps_it_unless_the_weights_break_it():
     u, v = np.meshgrid(*2 * [np.linspace(-1, 1, 9)], indexing="ij")
     V = np.stack([u + 0.2 * v, v, 0.4 * u * v + 0.3 * u**2], axis=-1).reshape(-1, 3)
     skew = np.linspace(0.01, 0.1, len(V))
-    even, odd = (
-        solver.optimize(V, mesh.grid_quads(8, 8), SIXTY, SIXTY, weights=problem.Weights(fairness))
-        for fairness in (skew + skew[::-1], skew)
-    )
+    weights = (problem.Weights(fairness) for fairness in (skew + skew[::-1], skew))
+    Q = mesh.grid_quads(8, 8)
+    even, odd = (solver.optimize(V, Q, SIXTY, SIXTY, weights=each) for each in weights)
     np.testing.assert_allclose(even.V[::-1] * [-1, -1, 1], even.V, atol=1e-10)
     assert even.converged and np.abs(odd.V[::-1] * [-1, -1, 1] - odd.V).max() > 1e-3
 
