@@ -1,7 +1,5 @@
 """`developable` against closed forms, fundamental forms by differences, and integrals."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 import sympy
@@ -91,23 +89,10 @@ def test_the_form_is_constant_while_control_points_move(part):
 
 
 @each_map
-def test_a_polyline_of_ever_shorter_chords_tends_to_the_length_of_the_edge(bend):
-    lengths = []
-    for count in (64, 128, 256):
-        points = bend(np.linspace(GRID[0, 0], GRID[1, 0], count + 1))
-        lengths.append(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    one, two = (4 * b - a for a, b in pairwise(lengths))
-    assert (16 * two - one) / 45 == pytest.approx(abs(GRID[1, 0] - GRID[0, 0]), abs=1e-10)
-
-
-@each_map
 def test_orientation_shape_and_kind_of_the_points_do_not_matter(bend):
     V = bend(GRID)
     assert measure.quality(V.reshape(-1, 3), conformal.quads(GRID)[1]).flips == 0
     assert np.allclose(bend(GRID[1, 2]), V[1, 2], atol=1e-12)
-
-
-def test_real_points_give_what_complex_ones_give():
     points = np.stack([GRID.real, GRID.imag], axis=-1)
     np.testing.assert_array_equal(developable.roll(points, 0.5), developable.roll(GRID, 0.5))
 
@@ -148,7 +133,7 @@ def test_a_straight_line_becomes_the_helix_in_closed_form():
     np.testing.assert_allclose(points, np.stack(wanted, axis=-1), atol=1e-14)
 
 
-def test_roll_coordinates_take_symbols():
+def test_roll_coordinates_take_symbols_and_tangent_differentiates_to_twelve_digits():
     x, y, k = sympy.symbols("x y k", positive=True)
     X = sympy.Matrix(developable.roll_coordinates(x, y, k))
     J = X.jacobian([x, y])
@@ -156,26 +141,24 @@ def test_roll_coordinates_take_symbols():
     values = {x: 0.3, y: 0.4, k: 2}
     found = [float(c.subs(values)) for c in X]
     np.testing.assert_allclose(found, developable.roll(0.3 + 0.4j, 2), rtol=1e-14)
+    found = developable.tangent(lambda z: developable.roll(z, 0.8), GRID, 2 + 1j)
+    turn = 0.8 * GRID.real
+    wanted = np.stack([2 * np.cos(turn), 1 + 0 * turn, 2 * np.sin(turn)], axis=-1)
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
 
 
 @pytest.mark.parametrize("gamma", [0.4, 1.3, 2.2])
-def test_cone_points_have_their_distance_from_the_apex_and_the_half_angle(gamma):
+def test_cones_have_their_distances_their_half_angle_and_closed_sectors(gamma):
     apex = -1 - 1j
     offset = developable.cone(GRID, gamma, apex) - [apex.real, apex.imag, 0]
     distance = np.linalg.norm(offset, axis=-1)
     np.testing.assert_allclose(distance, np.abs(GRID - apex), rtol=1e-13)
     np.testing.assert_allclose(offset[..., 2], distance * np.cos(gamma), rtol=1e-12)
-
-
-def test_the_closed_sector_meets_itself():
-    gamma = 0.5
-    half = np.pi * np.sin(gamma)
-    distance = np.linspace(0.2, 2, 7)
-    edges = [distance * np.exp(1j * s * half) for s in (-1, 1)]
-    both = developable.cone(np.array(edges), gamma)
-    np.testing.assert_allclose(both[0], both[1], atol=1e-14)
+    end = np.linspace(0.2, 2, 7) * np.exp(1j * np.pi * np.sin(gamma))
+    edges = np.stack([end.conj(), end])
+    np.testing.assert_allclose(*developable.cone(edges, gamma), atol=1e-14)
     with pytest.raises(ValueError, match="overlap"):
-        developable.cone(np.array(edges) * [[1], [np.exp(1e-6j)]], gamma)
+        developable.cone(edges * [[1], [np.exp(1e-6j)]], gamma)
 
 
 @pytest.mark.parametrize("turn", [1, -1])
@@ -210,7 +193,7 @@ def test_the_rectifying_developable_of_a_helix_is_its_cylinder(pitch):
     np.testing.assert_allclose(kappa, 0.7 / (0.7**2 + pitch**2), rtol=1e-13)
 
 
-def test_the_x_axis_becomes_the_curve_and_its_normal_is_that_of_the_surface():
+def test_the_x_axis_becomes_the_curve_with_the_surface_normal_and_rulings_stay_straight():
     s = np.linspace(0.5, SPACE.length - 0.5, 30)
     np.testing.assert_allclose(developable.rectifying(s + 0j, SPACE), SPACE.point(s), atol=1e-12)
     x, y = partials(lambda z: developable.rectifying(z, SPACE), s + 0j)
@@ -219,28 +202,24 @@ def test_the_x_axis_becomes_the_curve_and_its_normal_is_that_of_the_surface():
     normal, bent = np.cross(x, y), bent / np.linalg.norm(bent, axis=-1, keepdims=True)
     assert np.abs(np.cross(normal, bent)).max() < 1e-5
     assert (dot(normal, bent) < 0).all()  # T x B = -N
-
-
-def test_darboux_agrees_with_frenet_by_differences():
-    s, h = np.linspace(1, SPACE.length - 1, 9), 1e-3
-    before, now, after = (
-        developable.darboux(SPACE, SPACE.parameter(s + k * h)) for k in (-1, 0, 1)
-    )
-    cot, rate, T, B, kappa = now
-    N = np.cross(B, T)
-    change = [(b - a) / (2 * h) for a, b in zip(before, after, strict=True)]
-    np.testing.assert_allclose(change[0], rate, atol=1e-6)
-    np.testing.assert_allclose(change[2], kappa[:, None] * N, atol=1e-6)
-    np.testing.assert_allclose(change[3], -(cot * kappa)[:, None] * N, atol=1e-6)
-
-
-def test_rulings_stay_straight():
     s, reach = 4.0, np.linspace(-2, 2, 9)
     cot = developable.darboux(SPACE, SPACE.parameter(s))[0]
     line = developable.rectifying(s + reach * (cot + 1j), SPACE)
     steps = np.diff(line, axis=0)
     np.testing.assert_allclose(steps, np.broadcast_to(steps[0], steps.shape), atol=1e-11)
     assert np.linalg.norm(steps[0]) == pytest.approx(abs(cot + 1j) / 2, rel=1e-12)
+
+
+def test_darboux_agrees_with_frenet_by_differences():
+    s, h = np.linspace(1, SPACE.length - 1, 9), 1e-3
+    at = (SPACE.parameter(s + k * h) for k in (-1, 0, 1))
+    before, now, after = (developable.darboux(SPACE, t) for t in at)
+    cot, rate, T, B, kappa = now
+    N = np.cross(B, T)
+    change = [(b - a) / (2 * h) for a, b in zip(before, after, strict=True)]
+    np.testing.assert_allclose(change[0], rate, atol=1e-6)
+    np.testing.assert_allclose(change[2], kappa[:, None] * N, atol=1e-6)
+    np.testing.assert_allclose(change[3], -(cot * kappa)[:, None] * N, atol=1e-6)
 
 
 def reaches(z, curve):
@@ -267,20 +246,17 @@ def test_a_vertical_line_leaves_the_surface_at_the_edge_of_regression(x, side):
     assert np.abs(edge.imag[near] - side * low).min() < 1e-3
 
 
-def test_the_first_offending_grid_point_is_named():
+def test_the_first_offending_grid_point_is_named_and_the_other_side_has_none():
     z = np.linspace(4.5, 5.5, 12).reshape(3, 4) + 0j
     z[1, 2] += 2j
     z[2, 0] += 7j
     with pytest.raises(ValueError, match=r"grid point \(1, 2\) lies behind"):
         developable.rectifying(z, TWISTED)
-
-
-def test_the_other_side_of_the_curve_has_no_edge_here():
     z = np.array([[2 + 3j, 3 + 3j, 3.4 + 3j], [4 - 3j, 5 - 3j, 6 - 3j]])
     assert np.isfinite(developable.rectifying(z, TWISTED)).all()
 
 
-def test_the_edge_of_regression_is_tangent_to_the_rulings():
+def test_the_edge_of_regression_is_tangent_to_the_rulings_and_cylinders_have_none():
     s, h = np.linspace(3.9, 4.5, 5), 1e-4
     _, before = developable.regression(TWISTED, s - h)
     _, after = developable.regression(TWISTED, s + h)
@@ -288,9 +264,6 @@ def test_the_edge_of_regression_is_tangent_to_the_rulings():
     ruling, moved = cot[:, None] * T + B, after - before
     cosine = dot(ruling, moved) / np.linalg.norm(ruling, axis=1) / np.linalg.norm(moved, axis=1)
     np.testing.assert_allclose(np.abs(cosine), 1, atol=1e-6)
-
-
-def test_cylinders_have_no_edge_of_regression():
     z, points = developable.regression(helix(), np.array([1.0, 2.0]))
     assert np.isnan(z).all() and np.isnan(points).all()
 
@@ -335,14 +308,6 @@ def test_arc_lengths_agree_with_adaptive_quadrature(points):
     np.testing.assert_allclose(ends, points[[0, -1]], atol=1e-12)
 
 
-def test_points_move_at_unit_speed():
-    s, h = np.linspace(0.1, SPACE.length - 0.1, 50), 1e-3
-    near, far = (SPACE.point(s + k * h) - SPACE.point(s - k * h) for k in (1, 2))
-    speed = np.linalg.norm(8 * near - far, axis=1) / (12 * h)
-    np.testing.assert_allclose(speed, 1, atol=1e-11)
-    np.testing.assert_allclose(SPACE.integral(SPACE.parameter(s)), s, atol=1e-12)
-
-
 def test_a_circle_by_a_strange_parameter():
     def position(t, k=0):
         turn, size = np.exp(t) + k * np.pi / 2, np.exp(k * t)  # enough for k = 0 and 1
@@ -353,13 +318,8 @@ def test_a_circle_by_a_strange_parameter():
     s = np.linspace(0, curve.length, 9)
     wanted = np.stack([np.cos(1 + s), np.sin(1 + s)], axis=-1)
     np.testing.assert_allclose(curve.point(s), wanted, atol=1e-12)
-
-
-def test_tangent_differentiates_to_twelve_digits():
-    found = developable.tangent(lambda z: developable.roll(z, 0.8), GRID, 2 + 1j)
-    turn = 0.8 * GRID.real
-    wanted = np.stack([2 * np.cos(turn), 1 + 0 * turn, 2 * np.sin(turn)], axis=-1)
-    np.testing.assert_allclose(found, wanted, atol=1e-12)
+    s = np.linspace(0.1, SPACE.length - 0.1, 50)
+    np.testing.assert_allclose(SPACE.integral(SPACE.parameter(s)), s, atol=1e-12)
 
 
 @given(st.floats(0.35, 2.8), st.floats(0.35, 2.8), st.floats(-3, 3))
@@ -369,7 +329,7 @@ def test_rolled_grids_are_exact_isogonal_nets(theta, theta0, turn):
     assert np.degrees(np.abs(measure.deviations(V, Q, theta, theta0)).max()) < 1e-9
 
 
-def test_a_closed_rolled_grid_closes_and_tends_to_the_sheared_one():
+def test_rolled_grids_close_tend_to_sheared_ones_and_are_sheared_ones_at_curvature_0():
     changes = []
     for m in (12, 24):
         edge = 2 * np.pi / m
@@ -380,19 +340,17 @@ def test_a_closed_rolled_grid_closes_and_tends_to_the_sheared_one():
         changes.append(abs(z - plain).max() / edge)
         assert changes[-1] > 1e-3
     assert changes[0] / changes[1] == pytest.approx(4, rel=0.05)
-
-
-def test_rolled_grids_of_curvature_0_are_sheared_grids():
-    np.testing.assert_allclose(
-        developable.rolled_grid(T, T0, 3, 2, 0, 1 + 2j, 0.5, 1j),
-        conformal.sheared_grid(T, T0, 3, 2, 1 + 2j, 0.5, 1j),
-        atol=1e-13,
-    )
+    flat = developable.rolled_grid(T, T0, 3, 2, 0, 1 + 2j, 0.5, 1j)
+    plain = conformal.sheared_grid(T, T0, 3, 2, 1 + 2j, 0.5, 1j)
+    np.testing.assert_allclose(flat, plain, atol=1e-13)
 
 
 NAN = np.array([[0, 1], [1j, np.nan]])
 INFLECTED = [[0, 0, 0], [1, 2, 0], [3, -2, 0], [4, 0, 0.0]]
 SHEET = T, T0, 3, 3
+
+
+LAST = SPACE.length - 0.01 + np.array([0, -3j])
 WRONG = [
     (developable.roll, (NAN, 1), r"grid point \(1, 1\) is not a finite"),
     (developable.roll, (["a"], 1), "complex numbers or real points"),
@@ -407,11 +365,7 @@ WRONG = [
     (developable.cylinder, (GRID, SPACE), "3 coordinates: 2 are wanted"),
     (developable.cylinder, (GRID + 9, DIRECTRIX), r"point \(\d, \d\) asks"),
     (developable.rectifying, (GRID, DIRECTRIX), "2 coordinates: 3"),
-    (
-        developable.rectifying,
-        (SPACE.length - 0.01 + np.array([0, -3j]), SPACE),
-        r"grid point \(1,\) lies beyond the last ruling",
-    ),
+    (developable.rectifying, (LAST, SPACE), r"grid point \(1,\) lies beyond the last ruling"),
     (developable.rectifying, (GRID, bezier([[0, 0, 0], [3, 3, 3.0]])), "curvature vanishes near"),
     (developable.rectifying, (GRID, bezier(INFLECTED)), "curvature vanishes near"),
     (developable.rolled_grid, (T, T0, 0, 3, 1), "m = 0"),
@@ -424,11 +378,7 @@ WRONG = [
     (developable.arc_length, (developable.bezier(CONTROL), 1, 0), "start < stop"),
     (bezier, (0 * CONTROL,), "cusp"),
     (bezier, ([[0, 0], [1, 1], [0, 1], [1, 0]],), "cusp"),
-    (
-        SPACE.point,
-        ([0, 99.0],),
-        r"grid point \(1,\) asks for arc length 99 on a curve of length 9.9",
-    ),
+    (SPACE.point, ([0, 99.0],), r"grid point \(1,\) asks for arc length 99 on a curve of .* 9\.9"),
 ]
 
 

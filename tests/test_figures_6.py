@@ -1,5 +1,6 @@
 """The nets of Figs. 12 and 13, judged by `measure`: angles, faces, steps, and how they differ."""
 
+from functools import cache
 from itertools import combinations
 
 import matplotlib.pyplot as plt
@@ -10,16 +11,7 @@ from inetlib import measure, mesh, moebius, parallelogram, solver, surfaces
 from inetlib.drawings import fig12, fig13, patches
 
 STEPS = 17  # of the paper's runs
-
-
-@pytest.fixture(scope="module")
-def patch():
-    return fig12.nets()
-
-
-@pytest.fixture(scope="module")
-def rings():
-    return fig13.nets()
+patch, rings = cache(fig12.nets), cache(fig13.nets)
 
 
 @pytest.fixture(autouse=True)
@@ -41,16 +33,16 @@ def good(result, Q):
 
 
 @pytest.mark.parametrize("letter", "ABCDE")
-def test_the_patch_becomes_isogonal(patch, letter):
-    V, Q, found = patch
+def test_the_patch_becomes_isogonal(letter):
+    V, Q, found = patch()
     good(found[letter], Q)
     wanted = fig12.SETTINGS[letter]
     assert off(found[letter].V, Q, (wanted.get("theta"), wanted.get("theta0"))) < 1e-9
     assert off(V, Q, (None, None)) > 20  # there was something to do
 
 
-def test_the_parallelograms_are_what_the_titles_say(patch):
-    _, Q, found = patch
+def test_the_parallelograms_are_what_the_titles_say():
+    _, Q, found = patch()
     sides = {}
     for letter, result in found.items():
         board = mesh.checkerboard(result.V, Q)
@@ -69,16 +61,16 @@ def test_the_parallelograms_are_what_the_titles_say(patch):
     np.testing.assert_allclose(np.abs(sides["E"][1]), 0.5, atol=1e-11)
 
 
-def test_the_five_nets_differ_visibly_and_stay_near_the_start(patch):
-    V, _, found = patch
+def test_the_five_nets_differ_visibly_and_stay_near_the_start():
+    V, _, found = patch()
     nets = [result.V for result in found.values()]
     apart = [np.linalg.norm(a - b, axis=1).mean() for a, b in combinations(nets, 2)]
     assert min(apart) > 0.02  # of the diagonal; an edge is about 0.03
     assert max(np.linalg.norm(W - V, axis=1).max() for W in nets) < 0.15
 
 
-def test_the_hexagon_mesh_becomes_isogonal(rings):
-    _, Q, polygon, found = rings
+def test_the_hexagon_mesh_becomes_isogonal():
+    _, Q, polygon, found = rings()
     assert len(Q) == 432 and len(polygon) == 6
     for letter, asked in (("A", (60, 60)), ("B", (60, 45))):
         good(found[letter], Q)
@@ -87,8 +79,8 @@ def test_the_hexagon_mesh_becomes_isogonal(rings):
         assert np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).min() > 0.01
 
 
-def test_the_images_are_moebius_images_and_nearly_isogonal(rings):
-    _, Q, _, found = rings
+def test_the_images_are_moebius_images_and_nearly_isogonal():
+    _, Q, _, found = rings()
     for result in found.values():
         W = moebius.apply(moebius.inversion(fig13.CENTRE, fig13.RADIUS), result.V)
         assert measure.quality(W, Q).flips == 0
@@ -117,8 +109,8 @@ def test_drawings_list_their_nets_and_steps(module):
         assert drawing.data[f"net_{letter}"] is V
 
 
-def test_four_coloured_faces_are_laid_into_their_plane(patch):
-    _, Q, found = patch
+def test_four_coloured_faces_are_laid_into_their_plane():
+    _, Q, found = patch()
     _, ax = plt.subplots()
     patches.enlarged(ax, [0, 0, 1, 1], found["D"].V, Q, np.array([189, 190, 209, 210]))
     quads = [p.vertices[:4] for p in ax.child_axes[0].collections[1].get_paths()]

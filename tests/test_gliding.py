@@ -1,6 +1,7 @@
 """Fig. 9, columns 2 and 4: nets that glide on their surfaces, judged by closed forms."""
 
 import io
+from functools import cache
 
 import numpy as np
 import PIL.Image
@@ -11,12 +12,8 @@ from inetlib import measure, plot, publish
 from inetlib.drawings import fig09, lighter
 
 PANELS = [f"{letter}{column}" for letter in "ABCDE" for column in (2, 4)]
+glides = cache(fig09.optimised)
 T = np.radians(45)  # of the conjugate surface
-
-
-@pytest.fixture(scope="module")
-def glides():
-    return fig09.optimised()
 
 
 def back_on_surface(panel, V):
@@ -27,18 +24,13 @@ def back_on_surface(panel, V):
     return fig09.CENTRES[panel[0]] + away / np.sum(away**2, axis=1, keepdims=True)
 
 
-def defect(letter, V):
-    """A function of the points that vanishes on the surface and nowhere near it."""
-    x, y, z = V.T
-    if letter == "A":
-        return x**2 + y**2 - 1
-    if letter == "B":
-        return x**2 + y**2 + z**2 - 1
-    if letter == "C":
-        return np.hypot(x, y) - np.cosh(z)
-    if letter == "D":
-        return x * np.cos(z) + y * np.sin(z)
-    return conjugate_defect(V)
+DEFECTS = {  # functions of the points that vanish on the surface and nowhere near it
+    "A": lambda x, y, z: x**2 + y**2 - 1,
+    "B": lambda x, y, z: x**2 + y**2 + z**2 - 1,
+    "C": lambda x, y, z: np.hypot(x, y) - np.cosh(z),
+    "D": lambda x, y, z: x * np.cos(z) + y * np.sin(z),
+    "E": lambda x, y, z: conjugate_defect(np.stack([x, y, z], axis=1)),
+}
 
 
 def conjugate_point(u, v):
@@ -66,8 +58,8 @@ def conjugate_defect(V):
 
 
 @pytest.mark.parametrize("panel", PANELS)
-def test_every_face_has_its_angles_by_the_textbook_formula(glides, panel):
-    g = glides[panel]
+def test_every_face_has_its_angles_by_the_textbook_formula(panel):
+    g = glides()[panel]
     a, b, c, d = (g.result.V[k] for k in g.Q.T)
     wanted = {"2": (80, 45), "4": (50, 50)}[panel[1]]
     for one, two, angle in ((c - a, d - b, wanted[0]), (c + d - a - b, d + a - b - c, wanted[1])):
@@ -80,44 +72,39 @@ def test_every_face_has_its_angles_by_the_textbook_formula(glides, panel):
     assert after.area_ratio > 0.05 * before.area_ratio
 
 
-@pytest.mark.parametrize("panel", ["A2", "A4", "B2", "B4"])
-def test_no_face_is_turned_over_against_the_surface(glides, panel):
-    g = glides[panel]
-    corners = back_on_surface(panel, g.result.V)[g.Q]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    outward = corners.mean(axis=1) * ([1, 1, 0] if panel[0] == "A" else [1, 1, 1])
-    signs = np.sign(np.sum(normal * outward, axis=1))
-    assert abs(signs.sum()) == len(g.Q)
-
-
 @pytest.mark.parametrize("panel", PANELS)
-def test_all_vertices_lie_on_the_surface_by_its_closed_form(glides, panel):
-    g = glides[panel]
-    for V in (g.start, g.result.V):
-        assert np.abs(defect(panel[0], back_on_surface(panel, V))).max() < 1e-9
-    assert np.abs(defect(panel[0], 1.01 * back_on_surface(panel, g.start))).max() > 1e-3
-    moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
-    assert moved > 0.01  # it did glide
-
-
-@pytest.mark.parametrize("panel", PANELS)
-def test_nets_that_go_around_are_closed(glides, panel):
-    g = glides[panel]
+def test_nets_that_go_around_are_closed_and_no_face_is_turned_over(panel):
+    g = glides()[panel]
     edges = np.sort(np.stack([g.Q, np.roll(g.Q, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)
     around = panel[0] in "ABC"
     assert np.count_nonzero(uses == 1) == (2 * 20 if around else 2 * (20 + 8))
     assert g.rows.shape == (9, 20 if around else 21)
     assert len(g.start) == len(g.result.V) == g.rows.size
+    if panel[0] in "AB":
+        corners = back_on_surface(panel, g.result.V)[g.Q]
+        normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        outward = corners.mean(axis=1) * ([1, 1, 0] if panel[0] == "A" else [1, 1, 1])
+        assert abs(np.sign(np.sum(normal * outward, axis=1)).sum()) == len(g.Q)
 
 
-def test_distances_are_fractions_in_both_directions(glides):
-    rows = fig09.distances(glides)
+@pytest.mark.parametrize("panel", PANELS)
+def test_all_vertices_lie_on_the_surface_by_its_closed_form(panel):
+    g, defect = glides()[panel], DEFECTS[panel[0]]
+    for V in (g.start, g.result.V):
+        assert np.abs(defect(*back_on_surface(panel, V).T)).max() < 1e-9
+    assert np.abs(defect(*1.01 * back_on_surface(panel, g.start).T)).max() > 1e-3
+    moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
+    assert moved > 0.01  # it did glide
+
+
+def test_distances_are_fractions_in_both_directions():
+    rows = fig09.distances(glides())
     assert [r.panel for r in rows] == PANELS
     assert [r.printed for r in rows[1::2]] == [1.959, 0.016, 38.593, 3.120, 9.464]
     assert all(r.printed is None for r in rows[::2])
     for r in rows:
-        g = glides[r.panel]
+        g = glides()[r.panel]
         swapped = measure.hausdorff(g.start, g.Q, g.result.V, g.Q)
         assert r[3:] == pytest.approx((swapped.back / g.diagonal, swapped.there / g.diagonal))
         moved = np.linalg.norm(g.result.V - g.start, axis=1).max() / g.diagonal
@@ -131,8 +118,8 @@ def pixels(figure):
 
 
 @pytest.mark.parametrize("panel", ["A2", "E4"])
-def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(glides, panel):
-    g = glides[panel]
+def test_the_lighter_scene_has_fewer_paths_and_looks_the_same(panel):
+    g = glides()[panel]
     seen = []
     for change in (lambda scene: None, lighter.lighter):
         figure, axes = plot.canvas([["one"]], 3, 3)

@@ -13,18 +13,13 @@ LOG = st.floats(-0.8, 0.8)
 
 
 @given(ANGLE, LOG)
-def test_one_given_angle_is_kept_whatever_the_freedom(theta, s):
-    for kind in ("theta", "theta0"):
-        lam, mu = np.exp(logs(aim(**{kind: theta}), [s])[0])
-        found = dict(zip(("theta", "theta0"), parallelogram.angles(lam, mu), strict=True))
-        assert abs(found[kind] - theta) < 1e-9
-
-
-@given(ANGLE, LOG)
-def test_slopes_are_differences(theta, s):
+def test_a_given_angle_is_kept_whatever_the_freedom_and_slopes_are_differences(angle, s):
     h = 1e-5
+    for k, goal in enumerate((aim(theta=angle), aim(theta0=angle))):
+        lam, mu = np.exp(logs(goal, [s])[0])
+        assert abs(parallelogram.angles(lam, mu)[k] - angle) < 1e-9
     some = aim(), aim(equal=True), aim(lam=1.2), aim(mu=0.7)
-    for goal in (aim(theta=theta), aim(theta0=theta), *some):
+    for goal in (aim(theta=angle), aim(theta0=angle), *some):
         k = 2 if goal.kind == "free" else 1
         point = np.array([s, 0.1])[:k]
         _, slopes = logs(goal, point)
@@ -50,18 +45,14 @@ def test_pairs_of_an_angle_and_a_ratio():
     np.testing.assert_allclose(golden.values, np.pi / 3, atol=1e-12)
 
 
-def test_freedom_finds_the_nearest_point_of_the_goal():
+def test_freedom_finds_the_nearest_point_of_the_goal_inside_the_range_of_eq_4():
     assert freedom(aim(1.0, 1.0), (0.1, 0.3)).size == 0
     np.testing.assert_allclose(freedom(aim(equal=True), (0.1, 0.3)), [0.2])
     np.testing.assert_allclose(freedom(aim(theta=1.0), (0.1, 0.3)), [0.1])
     np.testing.assert_allclose(freedom(aim(lam=2.0), (0.1, 0.3)), [0.3])
     np.testing.assert_allclose(freedom(aim(), (0.1, 0.3)), [0.1, 0.3])
-
-
-def test_freedom_starts_inside_the_range_of_eq_4():
-    for wanted in ({}, {"equal": True}, {"lam": 3.0}, {"mu": 0.3}):
+    for goal in (aim(), aim(equal=True), aim(lam=3.0), aim(mu=0.3)):
         for near in ((2.0, 1.5), (-3.0, 2.0), (0.5, -4.0)):
-            goal = aim(**wanted)
             lam, mu = np.exp(logs(goal, freedom(goal, near))[0])
             assert parallelogram.is_admissible(lam, mu)
 

@@ -62,10 +62,6 @@ def test_conjugate_gradients_find_the_smallest_step(m, n):
     assert few < count
     best = J.T @ sparse.factor(S)(residual)
     assert np.linalg.norm(flat(d) - best) < 0.01 * np.linalg.norm(best)
-
-
-def test_nothing_to_do_takes_no_iteration():
-    _, f, A = blocks(5, 6)
     y, count = sparse.solve(A, 0 * f)
     assert count == 0 and not y.any()
 
@@ -88,7 +84,7 @@ def test_the_number_of_iterations_does_not_grow_with_the_grid(size, stretch):
     assert sparse.solve(A, f)[1] < 40
 
 
-def test_levels_double_and_end_at_the_grid():
+def test_levels_double_and_end_at_the_grid_and_splines_keep_cubics():
     for m, n in [(20, 20), (100, 60), (1000, 1000), (7, 1000), (2, 3), (45, 400)]:
         sizes = grids.levels(m, n)
         assert sizes[-1] == (m, n)
@@ -98,9 +94,6 @@ def test_levels_double_and_end_at_the_grid():
                 assert two == one or two in (2 * one, 2 * one - 1)
     assert grids.levels(25, 30) == [(25, 30)]
     assert grids.levels(25, 30, coarse=10) == [(13, 15), (25, 30)]
-
-
-def test_splines_keep_cubics():
     u, v = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 9), indexing="ij")
     fine_u, fine_v = np.meshgrid(np.linspace(0, 1, 12), np.linspace(0, 1, 17), indexing="ij")
 
@@ -124,8 +117,9 @@ def test_all_faces_have_the_wanted_angles(theta, theta0, m, n, stretch):
     assert (result.lam, result.mu) == pytest.approx(parallelogram.ratios(theta, theta0))
 
 
-def test_the_result_is_told_like_that_of_the_solver():
-    seen = grids.optimize(freeform(60, 61), lam=1.2, mu=0.9)
+def test_the_result_is_told_like_that_of_the_solver_and_the_bar_shows_the_levels(capsys):
+    seen = grids.optimize(freeform(60, 61), lam=1.2, mu=0.9, progress=True)
+    assert "60 x 61 quads" in capsys.readouterr().err
     assert (seen.lam, seen.mu) == pytest.approx((1.2, 0.9))
     assert all(isinstance(step, run.Step) for step in seen.history)
     first, last = seen.history[0], seen.history[-1]
@@ -135,16 +129,12 @@ def test_the_result_is_told_like_that_of_the_solver():
     assert {"coarse", "refine", "assemble", "solve", "check"} <= seen.seconds.keys()
 
 
-def test_a_small_grid_is_left_to_the_solver():
+def test_small_grids_are_left_to_the_solver_and_large_ones_stay_near_their_start():
     X, Q = freeform(9, 12), mesh.grid_quads(9, 12)
     theirs = solver.optimize(X.reshape(-1, 3), Q, 1.2, 1.2)
     np.testing.assert_array_equal(grids.optimize(X, 1.2, 1.2).V, theirs.V)
-
-
-def test_the_net_stays_near_its_start():
-    X = freeform(80, 80)
+    X, Q = freeform(80, 80), mesh.grid_quads(80, 80)
     result = grids.optimize(X, np.radians(60), np.radians(60))
-    Q = mesh.grid_quads(80, 80)
     assert max(measure.hausdorff(result.V, Q, X.reshape(-1, 3), Q)) < 0.2
 
 
@@ -181,8 +171,3 @@ def test_bad_input_is_refused():
     ]:
         with pytest.raises(ValueError, match=words):
             grids.optimize(**{"X": X, "theta": 1.0, "theta0": 1.0} | changes)
-
-
-def test_the_bar_shows_the_levels(capsys):
-    grids.optimize(freeform(50, 50), 1.0, 1.0, progress=True)
-    assert "50 x 50 quads" in capsys.readouterr().err

@@ -153,22 +153,10 @@ def named(caught):
 
 @given(sizes, sizes)
 def test_grid_quads_are_those_of_a_plain_loop(m, n):
-    Q = mesh.grid_quads(m, n)
+    Q = mesh.grid_quads(float(m), n)
     assert Q.dtype == np.int64
     np.testing.assert_array_equal(Q, slow_grid(m, n))
     np.testing.assert_array_equal(signed_area(positions(m, n)[Q]), 1)
-
-
-@pytest.mark.parametrize("size", [(0, 1), (1, 0), (-2, 3), (float("nan"), 1), (2.5, 1)])
-def test_a_grid_without_quads_or_with_half_a_quad_is_refused(size):
-    with pytest.raises(ValueError, match=r"[mn] = \S+: a whole number, 1 or more"):
-        mesh.grid_quads(*size)
-    assert mesh.grid_quads(2.0, 1).dtype == np.int64
-
-
-@pytest.fixture(scope="module")
-def hexagon():
-    return mesh.polygon_rings(6, 8)
 
 
 @pytest.mark.parametrize("sides", [3, 4, 5, 6, 7])
@@ -185,28 +173,19 @@ def test_ring_k_around_the_polygon_has_two_sides_k_quads(sides):
     assert mesh.is_labelled(Q) == labels_agree(Q) == (sides % 2 == 0)
 
 
-def test_the_hexagon_mesh_has_its_size_and_inner_vertices_of_valence_four(hexagon):
-    V, Q, polygon = hexagon
+def test_the_hexagon_mesh_is_convex_with_inner_valences_four_and_four_sides_give_a_lattice():
+    V, Q, polygon = mesh.polygon_rings(6, 8)
     assert (V.shape, Q.shape) == ((486, 3), (432, 4))
     assert len(set(polygon.tolist())) == 6 and set(Q.ravel()) == set(range(486))
     valence = np.bincount([k for pair in edges(Q, (0, 1, 2, 3)) for k in pair])
-    assert set(valence[polygon]) == {4}
     inner = set(range(486)) - {a for a, _ in boundary_edges(Q)}
-    assert {int(valence[k]) for k in inner} == {4}
+    assert {int(valence[k]) for k in [*inner, *polygon]} == {4}
     assert len(inner) == 486 - 6 - (12 * 8 + 6)
-
-
-def test_hexagon_and_all_faces_around_it_are_counter_clockwise(hexagon):
-    V, Q, polygon = hexagon
-    corners = V[Q]
     for k in range(4):  # every corner turns left: convex too
-        assert (signed_area(np.roll(corners, k, axis=1)[:, :3]) > 0).all()
+        assert (signed_area(np.roll(V[Q], k, axis=1)[:, :3]) > 0).all()
     assert signed_area(V[polygon]) > 0
     np.testing.assert_allclose(np.ptp(np.linalg.norm(V[polygon], axis=1)), 0, atol=1e-15)
     assert (V[:, 2] == 0).all()
-
-
-def test_four_sides_give_a_piece_of_the_square_lattice():
     V, Q, polygon = mesh.polygon_rings(4, 2)
     found = sorted(map(tuple, np.round(V[:, :2], 12).tolist()))
     lattice = np.arange(-2.5, 3)
@@ -215,14 +194,22 @@ def test_four_sides_give_a_piece_of_the_square_lattice():
     np.testing.assert_allclose(signed_area(V[polygon]), 1)
 
 
-@pytest.mark.parametrize("bad", [(2, 1), (6, 0), (-1, 3)])
-def test_a_polygon_without_rings_or_with_two_sides_is_refused(bad):
-    with pytest.raises(ValueError, match=r"(sides|rings) = -?\d: a whole number, [31] or"):
-        mesh.polygon_rings(*bad)
+@pytest.mark.parametrize(
+    ("make", "size"),
+    [(mesh.grid_quads, size) for size in ((0, 1), (1, 0), (-2, 3), (float("nan"), 1), (2.5, 1))]
+    + [(mesh.polygon_rings, size) for size in ((2, 1), (6, 0), (-1, 3))],
+)
+def test_sizes_that_make_no_mesh_are_refused(make, size):
+    with pytest.raises(ValueError, match=r"(m|n|sides|rings) = \S+: a whole number, [13] or"):
+        make(*size)
 
 
 PLANE, GRID = positions(2, 2), slow_grid(2, 2)
 HOLE = np.where(np.arange(9) == 5, np.nan, 0)[:, None]
+
+
+FLAPS = [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]]
+OVER = np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]])
 BAD = {
     "an empty list": (PLANE, [], "the mesh has no faces"),
     "triangles": (PLANE, GRID[:, :3], "the faces are triangles: quads are wanted"),
@@ -237,16 +224,8 @@ BAD = {
     "plane vertices": (PLANE[:, :2], GRID, r"V has the shape \(9, 2\)"),
     "complex vertices": (PLANE * 1j, GRID, "type complex128: .* three real coordinates"),
     "words": (PLANE.astype(str), GRID, "three real coordinates"),
-    "three faces at an edge": (
-        PLANE,
-        [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]],
-        "edge 0-1 belongs to more than two faces",
-    ),
-    "a face upside down": (
-        PLANE,
-        np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]]),
-        "faces . and 2 are oriented against each other|faces 2 and . are oriented",
-    ),
+    "three faces at an edge": (PLANE, FLAPS, "edge 0-1 belongs to more than two faces"),
+    "a face upside down": (PLANE, OVER, "faces (. and 2|2 and .) are oriented against each other"),
     "a face twice": (PLANE, np.concatenate([GRID, GRID[:1]]), "more than two|against"),
 }
 
@@ -289,16 +268,12 @@ def test_twins_of_any_shuffled_part_of_a_grid_are_those_of_a_dictionary(part, se
     np.testing.assert_array_equal(mesh.twins(Q), slow_twins(Q))
 
 
-@pytest.mark.parametrize(("name", "count"), [("grid", 1), ("annulus", 2), ("star", 1)])
-def test_boundary_loops_run_through_every_boundary_edge_once(name, count):
-    Q = MESHES[name]
-    loops = [loop.tolist() for loop in mesh.boundary_loops(Q)]
-    assert len(loops) == count
-    assert sum(map(len, loops)) == len(boundary_edges(Q))
-    assert {pair for loop in loops for pair in pairwise([*loop, loop[0]])} == boundary_edges(Q)
-
-
-def test_boundary_loops_have_the_mesh_on_their_left():
+def test_boundary_loops_run_once_through_the_boundary_the_mesh_on_their_left_and_never_touch():
+    for name, count in (("grid", 1), ("annulus", 2), ("star", 1), ("torus", 0)):
+        loops = [loop.tolist() for loop in mesh.boundary_loops(MESHES[name])]
+        pairs = [pair for loop in loops for pair in pairwise([*loop, loop[0]])]
+        assert len(loops) == count and len(pairs) == len(set(pairs))
+        assert set(pairs) == boundary_edges(MESHES[name])
     (loop,) = mesh.boundary_loops(slow_grid(3, 4))
     assert signed_area(positions(3, 4)[loop]) == 12
     V = annulus_positions(9, 2)
@@ -307,10 +282,6 @@ def test_boundary_loops_have_the_mesh_on_their_left():
     assert signed_area(V[inner]) < 0 < signed_area(V[outer])
     loops = mesh.boundary_loops(np.delete(slow_grid(3, 3), 4, axis=0))
     assert sorted(signed_area(positions(3, 3)[loop]) for loop in loops) == [-1, 9]
-    assert mesh.boundary_loops(rolled(3, 4, both=True)) == []
-
-
-def test_boundary_loops_that_touch_are_refused():
     with pytest.raises(ValueError, match="two boundary loops touch at vertex 4"):
         mesh.boundary_loops(slow_grid(2, 2)[[0, 3]])
 
@@ -326,14 +297,10 @@ def test_is_labelled_sees_one_quarter_turn_and_ignores_half_turns():
 
 
 @given(seeds, sizes, sizes)
-def test_is_labelled_agrees_with_sets_of_edges_for_random_quarter_turns(seed, m, n):
-    Q = shuffled(slow_grid(m, n), np.random.default_rng(seed), flips=False)
-    assert mesh.is_labelled(Q) == labels_agree(Q)
-
-
-@given(seeds, sizes, sizes)
 def test_label_puts_a_shuffled_grid_in_order(seed, m, n):
     rng = np.random.default_rng(seed)
+    turned = shuffled(slow_grid(m, n), rng, flips=False)
+    assert mesh.is_labelled(turned) == labels_agree(turned)
     Q = shuffled(slow_grid(m, n), rng)[rng.permutation(m * n)]
     before = Q.copy()
     done = mesh.label(Q)
@@ -346,47 +313,36 @@ def test_label_puts_a_shuffled_grid_in_order(seed, m, n):
     assert (areas == areas[0]).all()
 
 
-def test_label_keeps_the_first_face_of_each_component():
-    Q = np.concatenate([slow_grid(2, 2), np.roll(slow_grid(2, 2), 1, axis=1) + 9])
-    Q[[1, 6]] = np.roll(Q[[1, 6]], 1, axis=1)
-    done = mesh.label(Q)
-    np.testing.assert_array_equal(done[[0, 4]], Q[[0, 4]])
-    assert labels_agree(done)
+TWO_PARTS = np.concatenate([slow_grid(2, 2), np.roll(slow_grid(2, 2), 1, axis=1) + 9])
 
 
 @pytest.mark.parametrize(
-    "Q",
-    [MESHES["annulus"], MESHES["torus"], star(6), *(mesh.polygon_rings(k, 3)[1] for k in (4, 8))],
+    ("Q", "parts"),
+    [(TWO_PARTS, [0, 4]), (MESHES["annulus"], [0]), (MESHES["torus"], [0]), (star(6), [0])]
+    + [(mesh.polygon_rings(sides, 3)[1], [0]) for sides in (4, 8)],
 )
-def test_label_puts_other_shuffled_meshes_in_order(Q):
-    done = mesh.label(shuffled(Q, np.random.default_rng(3)))
+def test_label_puts_other_meshes_in_order_and_keeps_the_first_face_of_each_part(Q, parts):
+    Q = shuffled(Q, np.random.default_rng(3))
+    done = mesh.label(Q)
+    np.testing.assert_array_equal(done[parts], Q[parts])
     assert labels_agree(done)
     assert len(half_edges(done)) == done.size
 
 
-@pytest.mark.parametrize("sides", [3, 5, 7])
-def test_label_refuses_an_odd_polygon_and_names_its_boundary_loop(sides):
-    _, Q, polygon = mesh.polygon_rings(sides, 2)
+@pytest.mark.parametrize("k", [3, 5, 7])
+def test_label_refuses_and_names_odd_polygons_odd_inner_vertices_and_moebius_strips(k):
+    _, Q, polygon = mesh.polygon_rings(k, 2)
     words = r"boundary loop through the vertices \[([\d, ]+)\]( \.\.\.)? has an odd sum"
     with pytest.raises(ValueError, match=words) as caught:
         mesh.label(Q)
-    assert set(named(caught)) <= set(polygon.tolist())
-    assert len(named(caught)) == min(sides, 6)
-
-
-@pytest.mark.parametrize("valence", [3, 5, 7])
-def test_label_refuses_an_odd_interior_vertex_and_names_it(valence):
-    Q = (star(valence) + 11) % (2 * valence + 1)  # the centre gets another number
-    centre = 11 % (2 * valence + 1)
-    with pytest.raises(ValueError, match=f"interior vertex {centre} has the odd valence {valence}"):
-        mesh.label(Q)
-
-
-@pytest.mark.parametrize("k", [3, 4, 7])
-def test_label_refuses_a_moebius_strip(k):
-    with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
-        mesh.label(moebius_strip(k))
-    assert set(named(caught)) == set(range(k))
+    assert set(named(caught)) <= set(polygon.tolist()) and len(named(caught)) == min(k, 6)
+    centre = 11 % (2 * k + 1)  # another number than 0
+    with pytest.raises(ValueError, match=f"interior vertex {centre} has the odd valence {k}"):
+        mesh.label((star(k) + 11) % (2 * k + 1))
+    for faces in (k, k + 1):
+        with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
+            mesh.label(moebius_strip(faces))
+        assert set(named(caught)) == set(range(faces))
 
 
 def test_label_refuses_a_handle_that_glues_u_to_v_and_names_a_loop_of_faces():
@@ -415,39 +371,24 @@ def test_polylines_of_a_grid_are_its_rows_columns_and_diagonals(m, n):
         assert as_curves(lines) == as_curves(wanted)
 
 
-@pytest.mark.parametrize("size", [(3, 3), (4, 6), (5, 3)])
-def test_diagonals_of_a_torus_close_after_the_least_common_multiple(size):
-    m, n = size
-    found = mesh.polylines(rolled(m, n, both=True))
-    assert [len(lines) for lines in found] == [n, m, np.gcd(m, n), np.gcd(m, n)]
-    for lines, length in zip(found, (m, n, np.lcm(m, n), np.lcm(m, n)), strict=True):
-        assert {(len(line) - 1, line[0] == line[-1]) for line in lines} == {(length, True)}
-
-
-@pytest.mark.parametrize("centre", [0, 5, 12])
-def test_curves_end_at_a_singular_vertex(centre):
-    found = mesh.polylines(mesh.label((star(6) + centre) % 13))
-    for lines in (found.u, found.v):
-        ends = [line for line in lines if centre in line]
-        assert len(ends) == 3
-        assert all(centre in (line[0], line[-1]) for line in ends)
-
-
-@pytest.mark.parametrize("name", ["grid", "annulus", "torus"])
-def test_the_four_families_run_through_every_edge_and_diagonal_once(name):
-    Q = MESHES[name]
-    families = mesh.polylines(Q)
-    steps = [[frozenset(map(int, s)) for c in f for s in pairwise(c)] for f in families]
-    wanted = edges(Q, (1, 3)), edges(Q, (0, 2)), diagonals(Q, 0), diagonals(Q, 1)
-    for found, pairs in zip(steps, wanted, strict=True):
-        assert len(found) == len(pairs)
-        assert set(found) == pairs
-
-
-@pytest.mark.parametrize("function", [mesh.polylines, mesh.diagonal_meshes])
-def test_curves_and_diagonal_meshes_need_labels(function):
-    with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
-        function(mesh.polygon_rings(5, 1)[1])
+def test_curves_run_once_through_every_edge_close_on_a_torus_and_end_at_singular_vertices():
+    for name in ("grid", "annulus", "torus"):
+        Q = MESHES[name]
+        wanted = edges(Q, (1, 3)), edges(Q, (0, 2)), diagonals(Q, 0), diagonals(Q, 1)
+        for lines, pairs in zip(mesh.polylines(Q), wanted, strict=True):
+            steps = [frozenset(map(int, step)) for line in lines for step in pairwise(line)]
+            assert len(steps) == len(pairs) and set(steps) == pairs
+    for m, n in ((3, 3), (4, 6), (5, 3)):
+        found = mesh.polylines(rolled(m, n, both=True))
+        assert [len(lines) for lines in found] == [n, m, np.gcd(m, n), np.gcd(m, n)]
+        for lines, length in zip(found, (m, n, np.lcm(m, n), np.lcm(m, n)), strict=True):
+            assert {(len(line) - 1, line[0] == line[-1]) for line in lines} == {(length, True)}
+    for centre in (0, 5, 12):
+        found = mesh.polylines(mesh.label((star(6) + centre) % 13))
+        for lines in (found.u, found.v):
+            ends = [line for line in lines if centre in line]
+            assert len(ends) == 3
+            assert all(centre in (line[0], line[-1]) for line in ends)
 
 
 def test_black_faces_of_spatial_quads_are_parallelograms_along_the_diagonals():
@@ -460,7 +401,7 @@ def test_black_faces_of_spatial_quads_are_parallelograms_along_the_diagonals():
     np.testing.assert_allclose(p2 - p1, (V[Q[:, 2]] - V[Q[:, 0]]) / 2, atol=1e-15)
 
 
-def test_white_faces_surround_the_inner_vertices_counter_clockwise():
+def test_white_faces_surround_the_inner_vertices_and_no_two_black_ones_share_an_edge():
     m, n = 4, 3
     board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
     corners = board.V[board.white]
@@ -469,31 +410,23 @@ def test_white_faces_surround_the_inner_vertices_counter_clockwise():
     centres = sorted(map(tuple, corners.mean(axis=1)[:, :2].tolist()))
     assert centres == [(i, j) for i in range(1, m) for j in range(1, n)]
     assert board.others == []
-
-
-def test_every_edge_has_one_midpoint_and_no_two_black_faces_share_an_edge():
-    m, n = 4, 3
-    board = mesh.checkerboard(positions(m, n), slow_grid(m, n))
-    assert len(board.V) == m * (n + 1) + n * (m + 1)
-    assert len({tuple(p) for p in board.V.tolist()}) == len(board.V)
+    midpoints = {tuple(p) for p in board.V.tolist()}
+    assert len(board.V) == len(midpoints) == m * (n + 1) + n * (m + 1)
     assert set(board.black.ravel()) == set(range(len(board.V)))
     assert len(boundary_edges(board.black)) == 4 * m * n
     assert {(b, a) for a, b in half_edges(board.white)} <= set(half_edges(board.black))
 
 
-@pytest.mark.parametrize("valence", [3, 5, 6])
-def test_a_singular_vertex_gets_a_polygon_of_its_own(valence):
-    V, Q = star_positions(valence), star(valence)
-    board = mesh.checkerboard(V, shuffled(Q, np.random.default_rng(1), flips=False))
-    (polygon,) = board.others
-    assert board.white.shape == (0, 4)
-    found, wanted = board.V[polygon] @ [1, 1j, 0], V[1 : valence + 1] @ [0.5, 0.5j, 0]
-    assert len(found) == valence
-    np.testing.assert_allclose(np.abs(found[:, None] - wanted).min(axis=0), 0, atol=1e-12)
-    assert signed_area(board.V[polygon]) > 0
-
-
-def test_a_closed_surface_has_one_white_face_a_vertex_and_no_vertex_shared_only():
+def test_singular_vertices_get_polygons_and_closed_surfaces_one_white_face_a_vertex():
+    for valence in (3, 5, 6):
+        V, Q = star_positions(valence), star(valence)
+        board = mesh.checkerboard(V, shuffled(Q, np.random.default_rng(1), flips=False))
+        (polygon,) = board.others
+        assert board.white.shape == (0, 4)
+        found, wanted = board.V[polygon] @ [1, 1j, 0], V[1 : valence + 1] @ [0.5, 0.5j, 0]
+        assert len(found) == valence
+        np.testing.assert_allclose(np.abs(found[:, None] - wanted).min(axis=0), 0, atol=1e-12)
+        assert signed_area(board.V[polygon]) > 0
     V = np.random.default_rng(7).normal(size=(15, 3))
     board = mesh.checkerboard(V, rolled(4, 3, both=True))
     assert (len(board.black), len(board.white), len(board.V)) == (12, 12, 24)
@@ -501,13 +434,19 @@ def test_a_closed_surface_has_one_white_face_a_vertex_and_no_vertex_shared_only(
         mesh.checkerboard(V, two_cubes())
 
 
-@pytest.mark.parametrize("Q", [slow_grid(5, 4), rolled(6, 3), rolled(4, 6, both=True)])
-def test_edges_of_the_diagonal_meshes_are_face_diagonals(Q):
-    for found in mesh.diagonal_meshes(Q):
-        assert len(found) > 2
-        assert edges(found, (1, 3)) <= diagonals(Q, 0)
-        assert edges(found, (0, 2)) <= diagonals(Q, 1)
-        assert mesh.is_labelled(found)
+def test_edges_of_diagonal_meshes_are_face_diagonals_and_need_labels_and_a_colouring():
+    for Q in (slow_grid(5, 4), rolled(6, 3), rolled(4, 6, both=True)):
+        for found in mesh.diagonal_meshes(Q):
+            assert len(found) > 2
+            assert edges(found, (1, 3)) <= diagonals(Q, 0)
+            assert edges(found, (0, 2)) <= diagonals(Q, 1)
+            assert mesh.is_labelled(found)
+    assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
+    for function in (mesh.polylines, mesh.diagonal_meshes):
+        with pytest.raises(ValueError, match=r"do not agree on u and v: call mesh\.label"):
+            function(mesh.polygon_rings(5, 1)[1])
+    with pytest.raises(ValueError, match="no chessboard colouring"):
+        mesh.diagonal_meshes(rolled(3, 4, both=True))
 
 
 @given(st.integers(2, 6), st.integers(2, 6))
@@ -542,13 +481,7 @@ def test_diagonal_meshes_of_a_sheared_grid_have_the_swapped_shape():
             np.testing.assert_allclose(found, wanted, rtol=1e-13)
 
 
-def test_a_single_quad_has_no_diagonal_faces_and_an_odd_torus_no_diagonal_meshes():
-    assert [D.shape for D in mesh.diagonal_meshes(slow_grid(1, 1))] == [(0, 4), (0, 4)]
-    with pytest.raises(ValueError, match="no chessboard colouring"):
-        mesh.diagonal_meshes(rolled(3, 4, both=True))
-
-
-def test_triangles_of_many_quads_come_in_pairs_cut_along_the_shorter_diagonal():
+def test_quads_are_cut_along_the_shorter_diagonal_triangles_kept_and_other_faces_refused():
     V, Q = bumpy(5, 4) * [1, 1, 0], slow_grid(5, 4)
     for shift in range(4):
         Q = np.roll(Q, shift, axis=1)
@@ -559,19 +492,20 @@ def test_triangles_of_many_quads_come_in_pairs_cut_along_the_shorter_diagonal():
         for quad, pair in zip(Q, T.reshape(-1, 2, 3).tolist(), strict=True):
             ends = sorted((quad[::2], quad[1::2]), key=lambda k: np.linalg.norm(V[k[1]] - V[k[0]]))
             assert set(pair[0]) & set(pair[1]) == set(ends[0].tolist())
+    np.testing.assert_array_equal(mesh.triangles(positions(1, 1), [[0, 2, 1]])[1], [[0, 2, 1]])
+    for faces, words in [
+        ([[0, 1, 2, 3, 4]], r"shape \(1, 5\): rows of three or four vertices"),
+        ([[0, 1, 4]], "face 0 names vertex 4: there are only 4 vertices"),
+        ([[0, 1, 1]], "face 0 uses a vertex twice"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            mesh.triangles(positions(1, 1), faces)
 
 
-def tube():
-    """36 quads around a tube, all with equal diagonals."""
-    angle, k = 2 * np.pi * np.arange(36) / 36, np.arange(36)
-    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    after = np.roll(k, -1)
-    return np.concatenate([ring, ring + np.array([0, 0, 0.3])]), np.stack(
-        [k + 36, k, after, after + 36], 1
-    )
+RING = annulus_positions(36, 1), rolled(36, 1)
 
 
-@pytest.mark.parametrize(("net", "count"), [(mesh.polygon_rings(6, 8)[:2], 48), (tube(), 36)])
+@pytest.mark.parametrize(("net", "count"), [(mesh.polygon_rings(6, 8)[:2], 48), (RING, 36)])
 def test_equal_diagonals_are_cut_along_v1_v3_whatever_their_last_digits_are(net, count):
     V, Q = net
     d1, d2 = (np.linalg.norm(V[Q[:, k + 2]] - V[Q[:, k]], axis=1) for k in (0, 1))
@@ -582,14 +516,3 @@ def test_equal_diagonals_are_cut_along_v1_v3_whatever_their_last_digits_are(net,
     for seed in range(5):
         noise = 1 + 1e-13 * np.random.default_rng(seed).standard_normal(V.shape)
         np.testing.assert_array_equal(mesh.triangles(V * noise, Q)[1], wanted)
-
-
-def test_triangles_stay_as_they_are_and_other_faces_are_refused():
-    np.testing.assert_array_equal(mesh.triangles(positions(1, 1), [[0, 2, 1]])[1], [[0, 2, 1]])
-    for faces, words in [
-        ([[0, 1, 2, 3, 4]], r"shape \(1, 5\): rows of three or four vertices"),
-        ([[0, 1, 4]], "face 0 names vertex 4: there are only 4 vertices"),
-        ([[0, 1, 1]], "face 0 uses a vertex twice"),
-    ]:
-        with pytest.raises(ValueError, match=words):
-            mesh.triangles(positions(1, 1), faces)

@@ -40,17 +40,16 @@ def require_exact(net, Q, degrees):
     return z
 
 
-@pytest.mark.parametrize("degrees", ANGLES)
-def test_a_grid_through_five_handles(degrees):
-    Q = mesh.grid_quads(50, 50)
-    z = conformal.sheared_grid(*np.radians(degrees), 50, 50).ravel()
-    held = [0, 50, 50 * 51, 51 * 51 - 1, 51 * 25 + 25]
-    points = z[held] * (1 + 0.004j * np.abs(z[held]))
+@pytest.mark.parametrize(("degrees", "n"), [*((pair, 50) for pair in ANGLES), ((60, 45), 100)])
+def test_a_grid_through_five_handles(degrees, n):
+    Q, z = mesh.grid_quads(n, n), conformal.sheared_grid(*np.radians(degrees), n, n).ravel()
+    held = [0, n, n * (n + 1), n * (n + 2), n // 2 * (n + 2)]  # the corners and the middle
+    points = z[held] * (1 + 0.2j / n * np.abs(z[held]))
     net = conformal.planar_net(Q, *np.radians(degrees), handles=(held, points))
     found = require_exact(net, Q, degrees)
     assert np.abs(found[held] - points).max() < 1e-12 * np.abs(points).max()
     assert len(net.flipped) == len(net.wound) == 0
-    assert net.freedom == 101
+    assert net.freedom == 2 * n + 1
 
 
 @pytest.mark.parametrize("degrees", ANGLES)
@@ -91,17 +90,14 @@ def test_known_nets_are_recovered_from_handles():
     np.testing.assert_allclose(straight.V, conformal.quads(z)[0], atol=1e-11)
     # z^2 is given back by as many of its vertices as there are freedoms, along the rim
     w, rim = z**2, mesh.boundary_loops(Q)[0]
-    held = np.append(rim[::2], rim[1])
-    square = planar.planar_net(Q, T, T0, (held, w.ravel()[held]))
-    assert len(held) == square.freedom
-    np.testing.assert_allclose(square.V, conformal.quads(w)[0], atol=1e-11)
-    every = np.arange(w.size)  # more handles than freedoms, but they agree
-    np.testing.assert_allclose(
-        planar.planar_net(Q, T, T0, (every, w.ravel())).V, conformal.quads(w)[0], atol=1e-14
-    )
+    held, every = np.append(rim[::2], rim[1]), np.arange(w.size)
+    for given, off in ((held, 1e-11), (every, 1e-14)):  # more than freedoms, but they agree
+        net = planar.planar_net(Q, T, T0, (given, w.ravel()[given]))
+        np.testing.assert_allclose(net.V, conformal.quads(w)[0], atol=off)
+    assert len(held) == net.freedom
 
 
-def test_the_smoothest_net_has_the_least_energy_among_its_neighbours():
+def test_the_smoothest_net_has_the_least_energy_and_a_start_its_orthogonal_projection():
     Q, count = mesh.grid_quads(5, 4), 30
     A = planar.equations(Q, planar.factor_k(T, T0)).toarray()
     held, points = [0, 4, 25, 29], np.array([0, 0.5 + 0.3j, 1, 1.7 + 0.4j])
@@ -120,9 +116,6 @@ def test_the_smoothest_net_has_the_least_energy_among_its_neighbours():
     for direction in null.T:
         for step in (1e-4, -1e-4, 1e-4j):
             assert energy(grid + step * direction.reshape(6, 5)) > energy(grid)
-
-
-def test_a_start_gives_the_orthogonal_projection():
     V, Q, _ = mesh.polygon_rings(6, 3)
     net = planar.planar_net(Q, T, T0, start=V, smooth=0)
     A = planar.equations(Q, planar.factor_k(T, T0)).toarray()
@@ -140,13 +133,6 @@ def test_freedoms_are_the_dimension_of_the_null_space():
             assert A.shape[1] - len(Q) == wanted
 
 
-def test_ten_thousand_quads_in_nested_dissection():
-    Q = mesh.grid_quads(100, 100)
-    z, held = conformal.sheared_grid(T, T0, 100, 100).ravel(), [0, 100, 101 * 100, 101 * 101 - 1]
-    net = planar.planar_net(Q, T, T0, (held, z[held] * (1 + 1e-3j * np.abs(z[held]))))
-    require_exact(net, Q, (60, 45))
-
-
 def test_an_outline_is_followed_and_the_distance_is_true():
     V, Q, _ = mesh.polygon_rings(6, 8)
     V = V / np.abs(V).max()
@@ -162,7 +148,7 @@ def test_an_outline_is_followed_and_the_distance_is_true():
     assert net.distance == pytest.approx(apart, abs=1e-4)
 
 
-def test_an_outline_that_a_net_has_is_met():
+def test_outlines_that_a_net_has_are_met_two_of_an_annulus_and_functions_too():
     flat = conformal.sheared_grid(T, T0, 12, 8, 1, 0.05)
     z = flat**2
     ends = flat[[0, 12, 12, 0], [0, 0, 8, 8]]
@@ -176,9 +162,6 @@ def test_an_outline_that_a_net_has_is_met():
         assert net.distance < most
         require_exact(net, Q, (60, 45))
     assert planar.planar_net(Q, T, T0, boundary=rim).distance < 0.02
-
-
-def test_two_outlines_of_an_annulus_and_a_function():
     z = ring(40, 10, planar_ratio(40, T, T0))
     loops = [np.arange(40) * 11, np.arange(40) * 11 + 10]
     pairs = [(loops[0], lambda t: np.exp(2j * np.pi * t)), (loops[1], abs(z[10]) * CIRCLE)]
@@ -187,14 +170,11 @@ def test_two_outlines_of_an_annulus_and_a_function():
     assert net.distance < 2e-3
 
 
-def test_closest_points():
+@pytest.mark.parametrize("seed", range(4))
+def test_closest_points_and_of_feet_equally_near_the_first(seed):
     feet, tangents = planar.closest(np.array([0.3 - 1j, 2 + 0.25j, 3 + 3j]), SQUARE)
     np.testing.assert_allclose(feet, [0.3, 1 + 0.25j, 1 + 1j])
     np.testing.assert_allclose(tangents[:2], [1, 1j])
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_of_feet_equally_near_the_first_is_taken(seed):
     t = np.linspace(0.05, 0.45, 9)
     points = np.concatenate([t * (1 + 1j), 1 - t + 1j * t, [0.5 + 0.5j, 0, 1 + 0j, 1 + 1j]])
     noise = np.random.default_rng(seed).standard_normal((2, len(points)))
@@ -218,8 +198,8 @@ def test_the_nets_of_the_drawing():
     leaf, Q, _, _ = beyond_planar.leaf()
     assert leaf.distance < 1e-3
     require_exact(leaf, Q, (60, 60))
-    others = (*beyond_planar.annulus()[:2], (60, 60)), (*beyond_planar.hexagon()[:2], (60, 45))
-    for net, Q, degrees in others:
+    for draw, degrees in ((beyond_planar.annulus, (60, 60)), (beyond_planar.hexagon, (60, 45))):
+        net, Q, *_ = draw()
         require_exact(net, Q, degrees)
         assert len(net.flipped) == len(net.wound) == 0
     with pytest.raises(ValueError, match="multiple of 4"):
@@ -227,6 +207,11 @@ def test_the_nets_of_the_drawing():
 
 
 GRID = mesh.grid_quads(4, 3)
+
+
+ROW, COLUMN = np.divmod(mesh.grid_quads(6, 5), 6)
+TORUS = ROW % 6 * 5 + COLUMN % 5
+HELD = {"handles": ([1, 2], [0, 1])}
 
 
 @pytest.mark.parametrize(
@@ -252,37 +237,32 @@ GRID = mesh.grid_quads(4, 3)
         ({"boundary": [([0, 30], CIRCLE)]}, "vertex 30"),
         ({"boundary": []}, "0 handles do not fix"),
         ({"boundary": [0, 1, np.inf]}, "not finite"),
-        ({"handles": ([0, 1], [0, 1]), "smooth": 0}, "smooth = 0"),
-        ({"handles": ([0, 1], [0, 1]), "smooth": -1}, "smooth = -1"),
+        (HELD | {"smooth": 0}, "smooth = 0"),
+        (HELD | {"smooth": -1}, "smooth = -1"),
+        (HELD | {"theta": 60}, "radians"),
+        (HELD | {"theta": np.nan}, "radians"),
+        (HELD | {"theta": [T, T]}, "one number"),
+        (HELD | {"Q": GRID[:, :3]}, "quads are wanted"),
+        (HELD | {"Q": GRID[:0]}, "no faces"),
+        (HELD | {"Q": np.concatenate([GRID[:1], np.roll(GRID[1:], 1, 1)])}, "mesh.label"),
+        (HELD | {"Q": np.concatenate([GRID, GRID + 20])}, "2 separate parts"),
+        (HELD | {"Q": GRID + 1}, "vertex 0 belongs to no face"),
+        ({"Q": TORUS, "start": np.exp(1j * np.arange(30))}, "collapses"),
     ],
 )
 def test_bad_input_is_named(given, words):
     with pytest.raises(ValueError, match=words):
-        planar.planar_net(GRID, T, T0, **given)
+        planar.planar_net(**{"Q": GRID, "theta": T, "theta0": T0} | given)
 
 
-@pytest.mark.parametrize(
-    ("Q", "theta", "words"),
-    [
-        (GRID, 60, "radians"),
-        (GRID, np.nan, "radians"),
-        (GRID, [T, T], "one number"),
-        (GRID[:, :3], T, "quads are wanted"),
-        (GRID[:0], T, "no faces"),
-        (np.concatenate([GRID[:1], np.roll(GRID[1:], 1, 1)]), T, "mesh.label"),
-        (np.concatenate([GRID, GRID + 20]), T, "2 separate parts"),
-        (GRID + 1, T, "vertex 0 belongs to no face"),
-    ],
-)
-def test_bad_meshes_and_angles_are_named(Q, theta, words):
-    with pytest.raises(ValueError, match=words):
-        planar.planar_net(Q, theta, T0, handles=([1, 2], [0, 1]))
-
-
-def test_a_closed_mesh_collapses():
-    i, j = np.divmod(mesh.grid_quads(6, 5), 6)
-    with pytest.raises(ValueError, match="collapses"):
-        planar.planar_net(i % 6 * 5 + j % 5, T, T0, start=np.exp(1j * np.arange(30)))
+def test_bad_cells_and_maps_are_named():
+    for function, arguments, words in [
+        (conformal.cell_errors, (np.exp, 0, 1, 2), "not parallel"),
+        (conformal.leading_errors, (0, 1, 1, 1j), "not conformal"),
+        (conformal.kappa, (sympy.Integer(3), Z), "does not depend"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            function(*arguments)
 
 
 Z = sympy.Symbol("z")
@@ -316,12 +296,3 @@ def test_the_leading_error_is_right_and_the_rest_of_fourth_order(name):
         assert order[:, 1].min() > 3.85  # 6 for 1/z
     kappa = conformal.kappa(f, Z)
     assert kappa == wanted if wanted is not None else kappa.has(Z)
-
-
-def test_bad_cells_and_maps():
-    with pytest.raises(ValueError, match="not parallel"):
-        conformal.cell_errors(np.exp, 0, 1, 2)
-    with pytest.raises(ValueError, match="not conformal"):
-        conformal.leading_errors(0, 1, 1, 1j)
-    with pytest.raises(ValueError, match="does not depend"):
-        conformal.kappa(sympy.Integer(3), Z)

@@ -10,7 +10,12 @@ from inetlib import moebius, reference, surfaces
 from inetlib.surfaces import CATENOID, CYLINDER, SPHERE
 
 TAU = 2 * np.pi
+
+
 TURN = Rotation.from_rotvec([0.4, -0.7, 1.1])
+ROUND = SPHERE.point, (0, TAU), (-1, 1)
+
+
 RNG = np.random.default_rng()
 
 
@@ -67,7 +72,7 @@ def fine_points(V, F, parts=40):
     return (weights @ V[F]).reshape(-1, 3)
 
 
-def test_feet_and_normals_of_a_tilted_square_are_those_of_the_plane():
+def test_feet_and_normals_of_squares_are_those_of_the_plane_and_do_not_change_later():
     V, Q = grid(5, 4)
     R = reference.mesh(TURN.apply(V), Q)
     P = RNG.uniform(-0.5, 1.5, (300, 3))
@@ -76,28 +81,29 @@ def test_feet_and_normals_of_a_tilted_square_are_those_of_the_plane():
     np.testing.assert_allclose(feet, TURN.apply(wanted), atol=1e-14)
     np.testing.assert_allclose(normals, np.tile(TURN.apply([0, 0, 1]), (300, 1)), atol=1e-14)
     assert R.diagonal == pytest.approx(np.linalg.norm(np.ptp(TURN.apply(V), axis=0)))
+    V, Q = grid(2, 2)
+    V = np.concatenate([V, [[100.0, 0, 0]]])
+    R = reference.mesh(V, Q)
+    V += 7
+    assert R.diagonal == pytest.approx(2**0.5)
+    feet, _ = R.closest([[0.3, 0.4, 1], [50, 0.5, 0]])
+    np.testing.assert_allclose(feet, [[0.3, 0.4, 0], [1, 0.5, 0]], atol=1e-15)
 
 
 @pytest.mark.parametrize("sides", [3, 4])
 def test_feet_are_never_farther_than_the_nearest_of_many_points_of_the_faces(sides):
     V, Q = grid(6, 5, wavy)
-    F = Q if sides == 4 else np.concatenate([Q[:, [0, 1, 2]], Q[:, [0, 2, 3]]])
-    R = reference.mesh(V, F)
+    R = reference.mesh(V, Q if sides == 4 else np.concatenate([Q[:, :3], Q[:, [0, 2, 3]]]))
     P = RNG.uniform([-0.3, -0.3, -0.5], [1.3, 1.3, 0.7], (400, 3))
     feet, normals = R.closest(P)
-    near, _ = cKDTree(fine_points(R.V, R.F)).query(P)
-    far = norm(P - feet)[:, 0]
+    many = cKDTree(fine_points(R.V, R.F))
+    near, far = many.query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-14).all()
     spacing = 2**0.5 / 5 / 40  # no point of a face is farther from one of the many
     assert (near**2 - far**2 <= 2 * far * spacing + spacing**2).all()
-    assert cKDTree(fine_points(R.V, R.F)).query(feet)[0].max() < spacing
+    assert many.query(feet)[0].max() < spacing
     np.testing.assert_allclose(norm(normals), 1, rtol=1e-14)
-
-
-def test_a_point_of_the_mesh_is_its_own_foot():
-    R = reference.mesh(*grid(6, 5, wavy))
-    P = fine_points(R.V, R.F, 5)
-    np.testing.assert_allclose(R.closest(P)[0], P, atol=1e-15)
+    np.testing.assert_allclose(R.closest(many.data[::50])[0], many.data[::50], atol=1e-15)
 
 
 def test_a_fine_sphere_has_feet_and_normals_along_the_radius():
@@ -150,16 +156,6 @@ def test_turning_and_scaling_the_mesh_turns_and_scales_the_answers():
             np.testing.assert_allclose(b[single], TURN.apply(a)[single], atol=1e-9)
 
 
-def test_later_changes_of_the_vertices_and_vertices_of_no_face_play_no_part():
-    V, Q = grid(2, 2)
-    V = np.concatenate([V, [[100.0, 0, 0]]])
-    R = reference.mesh(V, Q)
-    V += 7
-    assert R.diagonal == pytest.approx(2**0.5)
-    feet, _ = R.closest([[0.3, 0.4, 1], [50, 0.5, 0]])
-    np.testing.assert_allclose(feet, [[0.3, 0.4, 0], [1, 0.5, 0]], atol=1e-15)
-
-
 def assert_frame(e1, e2, e3):
     frame = np.stack([e1, e2, e3], axis=1)
     products = np.einsum("kix,kjx->kij", frame, frame)
@@ -167,32 +163,34 @@ def assert_frame(e1, e2, e3):
     np.testing.assert_allclose(np.linalg.det(frame), 1, rtol=1e-13)
 
 
-def test_the_boundary_of_a_tilted_square_by_hand():
-    R = reference.mesh(*((lambda V, Q: (TURN.apply(V), Q))(*grid(4, 4))))
+def test_the_boundary_of_a_tilted_square_and_of_one_with_a_hole_by_hand():
+    V, Q = grid(4, 4)
     inside = np.array([[0.1, 0.4, 0.5], [0.45, 0.97, -1], [0.9, 0.6, 0], [0.33, -2, 3]])
     wanted = np.array([[0, 0.4, 0], [0.45, 1, 0], [1, 0.6, 0], [0.33, 0, 0]])
     along = np.array([[0, -1, 0], [-1, 0, 0], [0, 1, 0], [1, 0, 0]])  # the square on the left
-    feet, e1, e2, e3 = R.boundary(TURN.apply(inside))
+    feet, e1, e2, e3 = reference.mesh(TURN.apply(V), Q).boundary(TURN.apply(inside))
     np.testing.assert_allclose(feet, TURN.apply(wanted), atol=1e-14)
     np.testing.assert_allclose(e1, TURN.apply(along), atol=1e-14)
     np.testing.assert_allclose(e3, np.tile(TURN.apply([0, 0, 1]), (4, 1)), atol=1e-14)
     assert_frame(e1, e2, e3)
+    V, Q = grid(5, 5)
+    R = reference.mesh(V, np.delete(Q, 12, axis=0))  # the middle one of 5 x 5
+    feet, e1, *_ = R.boundary([[0.5, 0.45, 0.1], [0.05, 0.5, 0]])
+    np.testing.assert_allclose(feet, [[0.5, 0.4, 0], [0, 0.5, 0]], atol=1e-15)
+    np.testing.assert_allclose(e1, [[-1, 0, 0], [0, -1, 0]], atol=1e-15)
 
 
 def test_boundary_feet_are_never_farther_than_the_nearest_of_many_boundary_points():
     V, Q = grid(6, 5, wavy)
-    R = reference.mesh(V, Q)
-    ends = [[V[a] for a in loop] for loop in quads.boundary_loops(Q)]
-    (loop,) = [np.array(ring + ring[:1]) for ring in ends]
+    (loop,) = quads.boundary_loops(Q)
     t = np.linspace(0, 1, 200)[:, None, None]
-    many = ((1 - t) * loop[:-1] + t * loop[1:]).reshape(-1, 3)
+    many = cKDTree(((1 - t) * V[loop] + t * V[np.roll(loop, -1)]).reshape(-1, 3))
     P = RNG.uniform([-0.3, -0.3, -0.5], [1.3, 1.3, 0.7], (500, 3))
-    feet, *frame = R.boundary(P)
-    near, _ = cKDTree(many).query(P)
-    far = norm(P - feet)[:, 0]
+    feet, *frame = reference.mesh(V, Q).boundary(P)
+    near, far = many.query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-14).all()
     assert (near - far).max() < 1e-3
-    assert cKDTree(many).query(feet)[0].max() < 1e-3
+    assert many.query(feet)[0].max() < 1e-3
     assert_frame(*frame)
 
 
@@ -211,19 +209,18 @@ def test_a_round_boundary_has_a_tangent_without_jumps():
         np.testing.assert_allclose(np.abs(e2[:, 2]), 1, atol=1e-6)
 
 
-@pytest.mark.parametrize(("degrees", "corner"), [(29, False), (31, True)])
-def test_corners_of_more_than_30_degrees_keep_the_direction_of_the_segment_hit(degrees, corner):
-    turn = np.radians(degrees)
-    V = np.array([[-1, 0, 0], [0, 0, 0], [np.cos(turn), np.sin(turn), 0], [-0.5, 2, 0]])
-    R = reference.mesh(V, [[0, 1, 3], [1, 2, 3]])
-    feet, e1, *_ = R.boundary([[-1e-6, -0.1, 0]])
-    np.testing.assert_allclose(feet, [[0, 0, 0]], atol=2e-6)
-    half = 0 if corner else turn / 2
-    np.testing.assert_allclose(e1, [[np.cos(half), np.sin(half), 0]], atol=1e-5)
+def test_corners_turn_by_more_than_30_degrees_and_keep_the_direction_of_the_segment_hit():
+    for degrees, corner in ((29, False), (31, True)):
+        turn = np.radians(degrees)
+        V = np.array([[-1, 0, 0], [0, 0, 0], [np.cos(turn), np.sin(turn), 0], [-0.5, 2, 0]])
+        feet, e1, *_ = reference.mesh(V, [[0, 1, 3], [1, 2, 3]]).boundary([[-1e-6, -0.1, 0]])
+        np.testing.assert_allclose(feet, [[0, 0, 0]], atol=2e-6)
+        half = 0 if corner else turn / 2
+        np.testing.assert_allclose(e1, [[np.cos(half), np.sin(half), 0]], atol=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_at_a_corner_the_boundary_leaves_whatever_the_rounding(seed):
+@pytest.mark.parametrize("seed", range(8))
+def test_whatever_the_rounding_the_boundary_leaves_at_corners_and_30_degrees_make_none(seed):
     R = reference.mesh(*grid(3, 3))
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
     noise = 1e-13 * np.random.default_rng(seed).standard_normal(corners.shape)
@@ -232,18 +229,12 @@ def test_at_a_corner_the_boundary_leaves_whatever_the_rounding(seed):
         feet, e1, *_ = R.boundary(outside + noise)
         np.testing.assert_allclose(feet, corners, atol=1e-12)
         np.testing.assert_allclose(e1, [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], atol=1e-9)
-
-
-def test_a_turn_of_30_degrees_up_to_rounding_is_no_corner():
-    angle = TAU * np.arange(12) / 12
-    rim = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    k = np.arange(12)
+    k, angle = np.arange(12), seed + TAU * np.arange(12) / 12
     fan = np.stack([0 * k, k + 1, np.roll(k, -1) + 1], axis=1)
-    for turn in range(8):
-        V = np.concatenate([np.zeros((1, 3)), Rotation.from_rotvec([0, 0, turn]).apply(rim)])
-        feet, e1, *_ = reference.mesh(V, fan).boundary(1.1 * V[1:])
-        np.testing.assert_allclose(feet, V[1:], atol=1e-14)
-        np.testing.assert_allclose(dot(e1, feet), 0, atol=1e-12)
+    V = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    feet, e1, *_ = reference.mesh(np.concatenate([0 * V[:1], V]), fan).boundary(1.1 * V)
+    np.testing.assert_allclose(feet, V, atol=1e-14)
+    np.testing.assert_allclose(dot(e1, feet), 0, atol=1e-12)
 
 
 def test_feet_of_points_over_a_valley_do_not_hang_on_rounding():
@@ -265,59 +256,44 @@ def test_feet_of_points_over_a_valley_do_not_hang_on_rounding():
     np.testing.assert_allclose(norm(ends - known[2])[:, 0], np.minimum(s, 1 - s), atol=1e-11)
 
 
-def test_holes_are_boundary_too():
-    V, Q = grid(5, 5)
-    R = reference.mesh(V, np.delete(Q, 12, axis=0))  # the middle one of 5 x 5
-    feet, e1, *_ = R.boundary([[0.5, 0.45, 0.1], [0.05, 0.5, 0]])
-    np.testing.assert_allclose(feet, [[0.5, 0.4, 0], [0, 0.5, 0]], atol=1e-15)
-    np.testing.assert_allclose(e1, [[-1, 0, 0], [0, -1, 0]], atol=1e-15)
-
-
-def test_no_boundary_is_an_error_that_says_so():
-    assert reference.mesh(*grid(2, 2)).has_boundary
-    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
+def test_bad_points_and_surfaces_without_boundary_are_refused_and_no_points_have_no_feet():
+    square, sphere = reference.mesh(*grid(2, 2)), reference.parametric(*ROUND)
+    for answer in (square.closest, square.boundary):
+        with pytest.raises(ValueError, match=r"points have the shape \(3,\)"):
+            answer(np.zeros(3))
+        with pytest.raises(ValueError, match="point 1 has a coordinate that is not a finite"):
+            answer([[0, 0, 0], [0, np.nan, 0]])
+    for answer in (square.closest, square.boundary, sphere.closest):
+        assert all(X.shape == (0, 3) for X in answer(np.zeros((0, 3))))
+    assert square.has_boundary
     for R in (reference.mesh(*ball(20)), sphere):
         assert not R.has_boundary
         with pytest.raises(ValueError, match=r"no boundary: it is closed, or no `reference\.mesh`"):
             R.boundary(np.zeros((1, 3)))
 
 
-def test_bad_meshes_are_refused():
+def test_bad_meshes_and_surfaces_are_refused():
     V, Q = grid(2, 2)
-    cases = [
-        (V, np.zeros((0, 3), dtype=int), "no faces"),
-        (V, np.concatenate([Q[:3], Q[3:, ::-1]]), "oriented against each other"),
-        (V, [[0, 1, 4], [1, 0, 3], [3, 0, 1]], "more than two faces"),
-        (V, [[0, 1, 4], [0, 3, 6]], r"triangle \[0, 3, 6\] near .* has no area"),
-        (V, [[4, 0, 1], [4, 8, 7]], "vertex 4, near .*, form two fans"),
-    ]
-    for vertices, faces, words in cases:
+    for faces, words in [
+        (np.zeros((0, 3), dtype=int), "no faces"),
+        (np.concatenate([Q[:3], Q[3:, ::-1]]), "oriented against each other"),
+        ([[0, 1, 4], [1, 0, 3], [3, 0, 1]], "more than two faces"),
+        ([[0, 1, 4], [0, 3, 6]], r"triangle \[0, 3, 6\] near .* has no area"),
+        ([[4, 0, 1], [4, 8, 7]], "vertex 4, near .*, form two fans"),
+    ]:
         with pytest.raises(ValueError, match=words):
-            reference.mesh(vertices, faces)
+            reference.mesh(V, faces)
 
+    def cut(u, v):
+        return CYLINDER.point(u, np.where(u > 0.5, np.nan, v))
 
-@pytest.mark.parametrize("ask", ["closest", "boundary"])
-def test_bad_points_are_refused_and_no_points_have_no_feet(ask):
-    answer = getattr(reference.mesh(*grid(2, 2)), ask)
-    with pytest.raises(ValueError, match=r"points have the shape \(3,\)"):
-        answer(np.zeros(3))
-    with pytest.raises(ValueError, match="point 1 has a coordinate that is not a finite"):
-        answer([[0, 0, 0], [0, np.nan, 0]])
-    sphere = reference.parametric(SPHERE.point, (0, TAU), (-1, 1))
-    for X in (*answer(np.zeros((0, 3))), *sphere.closest(np.zeros((0, 3)))):
-        assert X.shape == (0, 3)
-
-
-def test_bad_surfaces_are_refused():
-    cases = [
+    for point, u, v, words in [
         (SPHERE.point, (1, 1), (0, 1), r"u = \(1, 1\): two finite numbers, the lower first"),
         (SPHERE.point, (0, 1), (0, np.inf), "v = "),
         (lambda u, v: u + v, (0, 1), (0, 1), "points .* are wanted"),
-        (lambda u, v: CYLINDER.point(u, np.where(u > 0.5, np.nan, v)), (0, 1), (0, 1),
-         r"not finite at u = 0\.505, v = 0"),
+        (cut, (0, 1), (0, 1), r"not finite at u = 0\.505, v = 0"),
         (lambda u, v: CYLINDER.point(u + v, 0 * v), (0, 1), (0, 1), "a curve or a point"),
-    ]  # fmt: skip
-    for point, u, v, words in cases:
+    ]:
         with pytest.raises(ValueError, match=words):
             reference.parametric(point, u, v)
 
@@ -348,6 +324,10 @@ def test_feet_on_the_cylinder_are_exact_and_go_on_beyond_its_rim():
     np.testing.assert_allclose(feet, X, atol=1e-12)
     np.testing.assert_allclose(np.abs(dot(normals, X * [1, 1, 0])), 1, rtol=1e-12)
     assert np.allclose(R.closest([[2, 0, 9.0]])[0], [[1, 0, 1.1]])  # not for ever
+    plane = reference.parametric(lambda u, v: np.stack([u, v, 0 * u], axis=-1), (0, 2), (0, 1))
+    feet, normals = plane.closest([[0.3, 0.8, 50], [1.99, 1.01, -7]])  # far off
+    np.testing.assert_allclose(feet, [[0.3, 0.8, 0], [1.99, 1.01, 0]], atol=1e-11)
+    np.testing.assert_allclose(np.abs(normals), [[0, 0, 1]] * 2, atol=1e-15)
 
 
 IMAGE = moebius.image(moebius.inversion((0, 0, 2.5), 1.5), CATENOID)
@@ -361,21 +341,12 @@ def test_feet_are_orthogonal_and_the_nearest_of_all(name):
     X = surface.point(RNG.uniform(0, TAU, 300), RNG.uniform(-1, 1, 300))
     P = X + off * RNG.uniform(-1, 1, X.shape)
     feet, normals = R.closest(P)
-    away = P - feet
-    assert norm(np.cross(away, normals)).max() < 1e-12 * R.diagonal
+    assert norm(np.cross(P - feet, normals)).max() < 1e-12 * R.diagonal
     np.testing.assert_allclose(norm(normals), 1, rtol=1e-14)
-    grid = np.meshgrid(np.linspace(0, TAU, 800), np.linspace(-1.3, 1.3, 500))
-    near, _ = cKDTree(surface.point(*grid).reshape(-1, 3)).query(P)
-    far = norm(away)[:, 0]
+    many = surface.point(*np.meshgrid(np.linspace(0, TAU, 800), np.linspace(-1.3, 1.3, 500)))
+    near, far = cKDTree(many.reshape(-1, 3)).query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-14).all()
     assert (near - far).max() < 1e-2
-
-
-def test_far_off_points_of_a_plane_patch_need_no_guess():
-    R = reference.parametric(lambda u, v: np.stack([u, v, 0 * u], axis=-1), (0, 2), (0, 1))
-    feet, normals = R.closest([[0.3, 0.8, 50], [1.99, 1.01, -7]])
-    np.testing.assert_allclose(feet, [[0.3, 0.8, 0], [1.99, 1.01, 0]], atol=1e-11)
-    np.testing.assert_allclose(np.abs(normals), [[0, 0, 1]] * 2, atol=1e-15)
 
 
 def test_a_surface_that_is_not_finite_beyond_its_domain_ends_there():
@@ -383,21 +354,18 @@ def test_a_surface_that_is_not_finite_beyond_its_domain_ends_there():
         inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
         return np.where(inside[..., None], np.stack([u, v, u * u - v * v], axis=-1), np.nan)
 
-    R = reference.parametric(saddle, (0, 1), (0, 1))
     P = RNG.uniform(-0.3, 1.3, (400, 3)) * [1, 1, 0.5]
-    feet, normals = R.closest(P)
+    feet, normals = reference.parametric(saddle, (0, 1), (0, 1)).closest(P)
     assert feet[:, :2].min() == 0
     assert feet[:, :2].max() == 1
     many = saddle(*np.meshgrid(np.linspace(0, 1, 501), np.linspace(0, 1, 501))).reshape(-1, 3)
-    near, _ = cKDTree(many).query(P)
-    far = norm(P - feet)[:, 0]
+    near, far = cKDTree(many).query(P)[0], norm(P - feet)[:, 0]
     assert (far <= near + 1e-12).all()
     assert (near - far).max() < 2e-3
-    inner = (feet[:, :2] > 0).all(axis=1) & (feet[:, :2] < 1).all(axis=1)
+    inner = ((feet[:, :2] > 0) & (feet[:, :2] < 1)).all(axis=1)
     assert inner.sum() > 100
     assert norm(np.cross(P - feet, normals))[inner].max() < 1e-6  # rougher near the edge
-    x, y = feet[:, 0], feet[:, 1]
-    wanted = np.stack([-2 * x, 2 * y, 0 * x + 1], axis=1)
+    wanted = feet * [-2, 2, 0] + [0, 0, 1]
     np.testing.assert_allclose(np.abs(dot(normals, wanted / norm(wanted))), 1, rtol=1e-6)
 
 
@@ -432,12 +400,3 @@ def test_the_poles_of_a_sphere_by_latitude_have_feet_and_normals():
         feet, normals = R.closest(scale * d)
         np.testing.assert_allclose(feet, d, atol=1e-9)
         np.testing.assert_allclose(np.abs(dot(normals, d)), 1, rtol=1e-8)
-
-
-def test_a_fine_mesh_and_its_surface_agree():
-    V, Q = tube(200, 100)
-    P = CYLINDER.point(RNG.uniform(0, TAU, 200), RNG.uniform(0, 1, 200)) * [0.8, 0.8, 1]
-    one = reference.mesh(V, Q).closest(P)
-    two = reference.parametric(CYLINDER.point, (0, TAU), (0, 1)).closest(P)
-    np.testing.assert_allclose(one[0], two[0], atol=1e-2)
-    np.testing.assert_allclose(np.abs(dot(one[1], two[1])), 1, atol=1e-4)

@@ -85,15 +85,12 @@ def test_dissection_is_a_permutation_that_keeps_the_factor_sparse(mesh_of):
     assert dissected < 0.75 * as_is
 
 
-def test_dissection_puts_the_middle_of_a_chain_last():
+def test_dissection_puts_the_middle_of_a_chain_last_and_copes_with_points_in_one_place():
     chain = diags_array([np.ones(99), np.full(100, 4.0), np.ones(99)], offsets=[-1, 0, 1]).tocsr()
     points = np.arange(100.0)[:, None]
     order = sparse.nested_dissection(points, chain)
     assert order[-1] == 49
     three = sparse.nested_dissection(points, csr_array(kron(chain, np.ones((3, 3)))))
     np.testing.assert_array_equal(three[::3], 3 * order)
-
-
-def test_dissection_of_points_in_one_place_is_still_a_permutation():
     order = sparse.nested_dissection(np.zeros((50, 3)), csr_array(np.ones((50, 50))))
     np.testing.assert_array_equal(np.sort(order), np.arange(50))

@@ -41,7 +41,7 @@ def generatrix(u):
     return 1 + u**2, u, 2 * u
 
 
-def test_a_darboux_surface_is_the_printed_product():
+def test_darboux_translational_rotational_and_helical_surfaces_by_hand():
     f, g, h, a, b, c = (sympy.Function(k) for k in "fghabc")
     A = sympy.Matrix(3, 3, lambda i, j: sympy.Function(f"A{i}{j}")(V))
     surface = surfaces.darboux(
@@ -49,9 +49,6 @@ def test_a_darboux_surface_is_the_printed_product():
     )
     expected = A * sympy.Matrix([f(U), g(U), h(U)]) + sympy.Matrix([a(V), b(V), c(V)])
     assert same(surface.coordinates(U, V), list(expected))
-
-
-def test_translational_rotational_and_helical_surfaces_by_hand():
     plane = surfaces.translation(lambda u: (u, 0, 0), lambda v: (v, 2 * v, 0))
     assert same(plane.coordinates(U, V), (U + V, 2 * V, 0))
     assert surfaces.first_form(plane, U, V) == (1, 1, 5)
@@ -62,17 +59,10 @@ def test_translational_rotational_and_helical_surfaces_by_hand():
     assert same(surfaces.helical(generatrix, P).coordinates(U, V), (*turned, z + P * V))
 
 
-def test_the_sphere_by_hand():
+def test_the_sphere_by_hand_and_mean_curvatures_by_symbols():
     E, F, G = surfaces.first_form(SPHERE, U, V)
     L, M, N = surfaces.second_form(SPHERE, U, V)  # on the unit sphere II = -I or +I
     assert zero(E - 1 / sympy.cosh(V) ** 2, F, G - E, (L / E) ** 2 - 1, M, L - N)
-
-
-def test_principal_parameters_and_curvatures_by_symbols():
-    L, M, N = (sympy.simplify(x) for x in surfaces.second_form(HELICOID, U, V))
-    assert (L, abs(M), N) == (0, 1, 0)  # asymptotic, not principal
-    for surface in (CYLINDER, SPHERE, CATENOID):
-        assert zero(surfaces.second_form(surface, U, V)[1])
     for surface in (CATENOID, HELICOID, surfaces.conjugate(T)):
         assert zero(surfaces.mean_curvature(surface, U, V))
     assert zero(surfaces.mean_curvature(CYLINDER, U, V) ** 2 - sympy.Rational(1, 4))
@@ -88,11 +78,8 @@ def test_forms_of_numbers_agree_with_symbols(surface):
     single = surfaces.first_form(surface, 0.3, 0.4)
     assert all(np.shape(x) == () for x in single)
     assert single[0] == pytest.approx(single[2], abs=1e-12)
-
-
-def test_the_step_sets_the_scale():
     small = surfaces.Surface("", lambda u, v: (1e-3 * np.cos(1e3 * u), 1e-3 * np.sin(1e3 * u), v))
-    found = surfaces.first_form(small, 0.1, 0.2, step=1e-5)
+    found = surfaces.first_form(small, 0.1, 0.2, step=1e-5)  # the step sets the scale
     assert found == pytest.approx((1, 0, 1), abs=1e-9)
 
 
@@ -117,14 +104,11 @@ def test_the_points_lie_on_the_surfaces_their_names_say():
     for t, member in ((0, CATENOID), (np.pi / 2, HELICOID)):
         found = surfaces.conjugate(t).point(u, v)
         np.testing.assert_allclose(found, member.point(u, v), atol=1e-14)
-
-
-@pytest.mark.parametrize("surface", FIVE, ids=NAMES)
-def test_point_takes_numbers_and_arrays_alike(surface):
-    assert surface.point(0.3, -1.2).shape == (3,)
-    grid = surface.point(np.full((2, 1), 0.3), np.full(3, -1.2))
-    assert grid.shape == (2, 3, 3)
-    np.testing.assert_allclose(grid[1, 2], surface.point(0.3, -1.2), rtol=1e-15)
+    for surface in FIVE:
+        assert surface.point(0.3, -1.2).shape == (3,)
+        grid = surface.point(np.full((2, 1), 0.3), np.full(3, -1.2))
+        assert grid.shape == (2, 3, 3)
+        np.testing.assert_allclose(grid[1, 2], surface.point(0.3, -1.2), rtol=1e-15)
 
 
 @pytest.mark.parametrize("image", [False, True], ids=["surface", "Moebius image"])
@@ -148,9 +132,6 @@ def test_the_stereographic_image_of_the_sphere_is_the_exponential_map():
     u, v = np.meshgrid(np.linspace(-3, 3, 7), np.linspace(-2, 2, 6))
     image = moebius.stereographic(SPHERE.point(u, v))
     np.testing.assert_allclose(image, np.exp(v + 1j * u), rtol=1e-12)
-
-
-def test_the_stereographic_net_is_exact_on_the_compensated_grid():
     z = conformal.sheared_grid(*ASKED, 6, 9, edge=0.3, direction=1 - 1j, kappa=-1)
     points = SPHERE.point(z.real, z.imag)
     flat = measure.deviations(*conformal.quads(moebius.stereographic(points)), *ASKED)
@@ -188,7 +169,7 @@ def test_mercator_is_the_closed_form(profile, closed):
     np.testing.assert_array_equal(t_of_w(np.array([-1.0, 99.0])), [profile.start, profile.stop])
 
 
-def test_mercator_of_a_spline_is_the_quadrature_span_by_span():
+def test_splines_pass_through_their_points_and_their_mercator_is_the_quadrature():
     rng = np.random.default_rng(5)
     profile = surfaces.spline_profile(np.stack([rng.uniform(0.6, 1.4, 7), np.arange(7.0)], axis=1))
     radius, height = profile.radius.derivative(), profile.height.derivative()
@@ -202,6 +183,15 @@ def test_mercator_of_a_spline_is_the_quadrature_span_by_span():
     assert w_of_t(profile.stop) == pytest.approx(total, abs=1e-8)
     t = np.linspace(0, profile.stop, 99)
     np.testing.assert_allclose(t_of_w(w_of_t(t)), t, atol=1e-10)
+    t = np.linspace(-1.2, 1.2, 41)
+    points = np.stack([np.cos(t), np.sin(t)], axis=1)
+    profile = surfaces.spline_profile(points)
+    knots = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    np.testing.assert_allclose(profile.radius(knots), points[:, 0], atol=1e-14)
+    s = np.linspace(0, profile.stop, 500)
+    np.testing.assert_allclose(np.hypot(profile.radius(s), profile.height(s)), 1, atol=1e-6)
+    w_of_t, _ = surfaces.mercator(profile)
+    assert w_of_t(profile.stop) == pytest.approx(2 * np.arctanh(np.sin(1.2)), abs=1e-5)
 
 
 def test_the_named_profiles_can_be_used_as_they_are():
@@ -210,13 +200,9 @@ def test_the_named_profiles_can_be_used_as_they_are():
         assert surfaces.check_profile(make()).start < make().stop
     cone = surfaces.PROFILES["cone"]()
     assert np.degrees(np.arctan2(cone.radius(1.0), cone.height(1.0))) == pytest.approx(30)
-
-
-def test_slope_is_the_derivative_up_to_the_ends():
-    t = np.linspace(-1.2, 1.2, 31)
-    radius, height = surfaces.slope(surfaces.sphere_profile(), t)
-    np.testing.assert_allclose(radius, -np.sin(t), atol=1e-9)
-    np.testing.assert_allclose(height, np.cos(t), atol=1e-9)
+    t = np.linspace(-1.2, 1.2, 31)  # the slope is the derivative up to the ends
+    slope = surfaces.slope(surfaces.sphere_profile(), t)
+    np.testing.assert_allclose(slope, [-np.sin(t), np.cos(t)], atol=1e-9)
 
 
 def test_revolve_is_eq_14():
@@ -227,18 +213,6 @@ def test_revolve_is_eq_14():
     turned = surfaces.rotational(lambda t: (2 + np.cos(t), 0, np.sin(t))).point(*GRID)
     torus = surfaces.revolve(surfaces.torus_profile(2, 1), GRID[1], GRID[0])
     np.testing.assert_allclose(turned, torus, atol=1e-15)
-
-
-def test_a_spline_passes_through_its_points_and_comes_near_the_curve():
-    t = np.linspace(-1.2, 1.2, 41)
-    points = np.stack([np.cos(t), np.sin(t)], axis=1)
-    profile = surfaces.spline_profile(points)
-    knots = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    np.testing.assert_allclose(profile.radius(knots), points[:, 0], atol=1e-14)
-    s = np.linspace(0, profile.stop, 500)
-    np.testing.assert_allclose(np.hypot(profile.radius(s), profile.height(s)), 1, atol=1e-6)
-    w_of_t, _ = surfaces.mercator(profile)
-    assert w_of_t(profile.stop) == pytest.approx(2 * np.arctanh(np.sin(1.2)), abs=1e-5)
 
 
 def screw(pitch, profile=VASE):
@@ -257,26 +231,19 @@ def test_helical_surfaces_become_isothermal(profile, pitch):
     np.testing.assert_allclose(F / E, 0, atol=1e-7)
 
 
-def test_points_in_helical_coordinates_lie_on_the_helical_surface():
-    pitch = 0.4
-    surface, w = screw(pitch)
+def test_helical_coordinates_lie_on_the_surface_and_are_mercator_or_the_helicoid_where_known():
+    surface, w = screw(0.4)
     x, y, z = surface.point(0.7, w).T
-    height = z - pitch * np.unwrap(np.arctan2(y, x))  # of the meridian, up to full turns
-    turns = 2 * np.pi * pitch * np.arange(-3, 4)[:, None]
+    height = z - 0.4 * np.unwrap(np.arctan2(y, x))  # of the meridian, up to full turns
+    turns = 2 * np.pi * 0.4 * np.arange(-3, 4)[:, None]
     off = np.hypot(x, y) - VASE.radius(height + turns)
     assert np.abs(off).max(axis=1).min() < 1e-9
-
-
-def test_without_pitch_the_helical_coordinate_is_that_of_mercator():
     surface, w = screw(0.0)
     w_of_t, t_of_w = surfaces.mercator(VASE)
     assert w[-1] == pytest.approx(w_of_t(VASE.stop), rel=1e-11)
     expected = surfaces.revolve(VASE, 1.1, t_of_w(w))
     np.testing.assert_allclose(surface.point(1.1, w), expected, atol=1e-9)
-
-
-def test_a_horizontal_line_gives_the_helicoid():
-    """Turned and lifted, a piece of the x-axis: isothermal for radius = sinh(w + constant)."""
+    # the helicoid, of a piece of the x-axis: isothermal for radius = sinh(w + constant)
     surface, w = screw(1.0, Profile(lambda t: t, lambda t: 0 * t, 0.1, 2.0))
     assert w[-1] == pytest.approx(np.arcsinh(2.0) - np.arcsinh(0.1), rel=1e-10)
     radius = np.hypot(*surface.point(0.3, w).T[:2])
@@ -292,43 +259,36 @@ BAD = [
     (Profile(lambda t: 1 + t**2, lambda t: t**2, -1, 1), "turns back .* near t = 0"),
     (Profile(lambda t: t * np.nan, lambda t: t, 0, 1), "not finite"),
 ]
+WRONG = [
+    (surfaces.spline_profile, [[1.0, 0]], "shape"),
+    (surfaces.spline_profile, [[1.0, 0, 0], [1, 1, 0]], "shape"),
+    (surfaces.spline_profile, [[1.0, 0], [1, 0], [1, 1]], "points 0 and 1 are the same"),
+    (surfaces.spline_profile, [[1.0, 0], [np.nan, 1]], "point 1 is not finite"),
+    (surfaces.spline_profile, [[1.0, 0], [-1, 1]], "stay positive"),
+    (surfaces.torus_profile, 0.5, "major = 0.5"),
+    (surfaces.cone_profile, 2.0, "gamma = 2"),
+    *((surfaces.mercator, profile, words) for profile, words in BAD),
+    *((lambda p: surfaces.helical_isothermal(p, 0.3), *bad) for bad in BAD),
+]
 
 
-@pytest.mark.parametrize(("profile", "word"), BAD)
-def test_a_bad_profile_is_named(profile, word):
-    for use in (surfaces.mercator, lambda p: surfaces.helical_isothermal(p, 0.3)):
-        with pytest.raises(ValueError, match=word):
-            use(profile)
+@pytest.mark.parametrize(("function", "argument", "words"), WRONG)
+def test_bad_profiles_and_arguments_are_named(function, argument, words):
+    with pytest.raises(ValueError, match=words):
+        function(argument)
 
 
-@pytest.mark.parametrize(
-    ("make", "argument", "word"),
-    [
-        (surfaces.spline_profile, [[1.0, 0]], "shape"),
-        (surfaces.spline_profile, [[1.0, 0, 0], [1, 1, 0]], "shape"),
-        (surfaces.spline_profile, [[1.0, 0], [1, 0], [1, 1]], "points 0 and 1 are the same"),
-        (surfaces.spline_profile, [[1.0, 0], [np.nan, 1]], "point 1 is not finite"),
-        (surfaces.spline_profile, [[1.0, 0], [-1, 1]], "stay positive"),
-        (surfaces.torus_profile, 0.5, "major = 0.5"),
-        (surfaces.cone_profile, 2.0, "gamma = 2"),
-    ],
-)
-def test_bad_arguments_of_profiles_are_named(make, argument, word):
-    with pytest.raises(ValueError, match=word):
-        make(argument)
-
-
-@pytest.mark.parametrize(("m", "n"), [(20, 20), (7, 12)])
-def test_the_freeform_patch_has_the_unit_box_and_its_own_quads(m, n):
-    vertices, quads = surfaces.freeform_patch(m, n)
-    assert vertices.shape == ((m + 1) * (n + 1), 3) and quads.shape == (m * n, 4)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    assert np.linalg.norm(high - low) == pytest.approx(1, abs=1e-12)
-    np.testing.assert_allclose(low + high, 0, atol=1e-12)
-    assert measure.quality(vertices, quads).flips == 0
-
-
-def test_the_freeform_patch_is_a_dome_and_a_saddle_far_from_isogonal():
+def test_the_freeform_patch_is_a_dome_and_a_saddle_in_a_unit_box_at_any_resolution():
+    for m, n in ((20, 20), (7, 12)):
+        vertices, quads = surfaces.freeform_patch(m, n)
+        assert vertices.shape == ((m + 1) * (n + 1), 3) and quads.shape == (m * n, 4)
+        low, high = vertices.min(axis=0), vertices.max(axis=0)
+        assert np.linalg.norm(high - low) == pytest.approx(1, abs=1e-12)
+        np.testing.assert_allclose(low + high, 0, atol=1e-12)
+        assert measure.quality(vertices, quads).flips == 0
+    coarse, fine = (surfaces.freeform_patch(k, k)[0].reshape(k + 1, k + 1, 3) for k in (20, 40))
+    coarse, fine = ((x - x[0, 0]) / np.linalg.norm(x[0, 0] - x[-1, -1]) for x in (coarse, fine))
+    np.testing.assert_allclose(fine[::2, ::2], coarse, atol=1e-12)
     vertices, quads = surfaces.freeform_patch()
     theta, theta0 = (np.degrees(x) for x in measure.angles(vertices, quads))
     assert np.ptp(theta) > 20 and np.ptp(theta0) > 20
@@ -338,9 +298,3 @@ def test_the_freeform_patch_is_a_dome_and_a_saddle_far_from_isogonal():
     uu, uv, vv = (np.sum(x * np.cross(u, v), axis=-1)[3:-3, 3:-3] for x in second)
     assert np.mean(uu * vv - uv**2 > 0) > 0.2  # the dome
     assert np.mean(uu * vv - uv**2 < 0) > 0.2  # the saddle
-
-
-def test_freeform_patches_of_any_resolution_lie_on_one_surface():
-    coarse, fine = (surfaces.freeform_patch(k, k)[0].reshape(k + 1, k + 1, 3) for k in (20, 40))
-    coarse, fine = ((x - x[0, 0]) / np.linalg.norm(x[0, 0] - x[-1, -1]) for x in (coarse, fine))
-    np.testing.assert_allclose(fine[::2, ::2], coarse, atol=1e-12)
