@@ -4,8 +4,7 @@
 
 Draws every figure into FOLDER, a copy of figures/, under the settings of this process's
 environment, and writes FOLDER/results.npz and FOLDER/rewritten.json.  NOISE: every array is
-multiplied by 1 + NOISE * (a random number between -1 and 1) before it is drawn.
-"""
+multiplied by 1 + NOISE * (a random number between -1 and 1) before it is drawn."""
 
 import importlib
 import json
@@ -73,8 +72,7 @@ def shaken(size):
 def drawn(names, folder, noise=0.0):
     """The figures of these names that differ from those in a folder, {name: differences}.
 
-    They are written there as `publish.save` does.
-    """
+    They are written there as `publish.save` does."""
     noisy = shaken(noise) if noise else lambda x: x
     found = {}
     for name in names:

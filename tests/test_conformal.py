@@ -22,8 +22,7 @@ def diagonals(z):
 def deviation(f, theta=T, theta0=T0, m=6, n=5, **grid):
     """Largest deviation from (theta, theta0) in degrees, by complex arguments.
 
-    An argument has a sign: a cell turned over would show.
-    """
+    An argument has a sign: a cell turned over would show."""
     d1, d2 = diagonals(f(conformal.sheared_grid(theta, theta0, m, n, **grid)))
     found = np.stack([np.angle(d2 / d1), np.angle((d2 - d1) / (d1 + d2))])
     return np.degrees(np.abs(found - [[[theta]], [[theta0]]]).max())

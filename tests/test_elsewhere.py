@@ -2,8 +2,7 @@
 
 Each setting switches something of the processor off, in fresh processes (see elsewhere.py):
 results that hang on ties, Table 1 and all figures must be as they are here and as stored.  The
-short form has two settings; `make test-long` has all, and all notebooks, twice.
-"""
+short form has two settings; `make test-long` has all, and all notebooks, twice."""
 
 import json
 import os

@@ -1,8 +1,7 @@
 """One test an erratum: what is printed is false, what ERRATA.md puts in its place is true.
 
 The vectors are made here by hand; only where the statement is about a net does the library
-build one.
-"""
+build one."""
 
 import numpy as np
 import pytest

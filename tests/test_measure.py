@@ -55,8 +55,7 @@ def random_quads(seed, count=20):
     """Disjoint spatial quads (V, Q) and their diagonals d1, d2 as complex numbers.
 
     The diagonals are drawn in the plane, counter-clockwise, and then every quad is turned
-    somewhere, and the second diagonal is moved away from the first one.
-    """
+    somewhere, and the second diagonal is moved away from the first one."""
     rng = np.random.default_rng(seed)
     d1 = np.exp(rng.uniform(-1, 1, count) + 1j * rng.uniform(0, 7, count))
     d2 = d1 * np.exp(rng.uniform(-1, 1, count) + 1j * rng.uniform(0.1, np.pi - 0.1, count))
@@ -234,8 +233,7 @@ def test_one_folded_face_is_found_and_no_other(cell):
 
     Found in the flat net, where the sign of the area tells, and in the same net in space.
     A corner beside the folded face has one neighbour for and one against it: not counted,
-    however the turn rounds.
-    """
+    however the turn rounds."""
     i, j = cell
     V, Q = sheared(5, 4, v=(0, 1, 0))
     V[(i + 1) * 5 + j + 1] = [i - 0.2, j - 0.2, 0]

@@ -70,8 +70,7 @@ def quarter_turn_handle():
     """A 4 x 4 grid with two crossing bands, each from the right side to the top side.
 
     All interior valences are 4 and the one boundary loop is even: only the bands, which
-    glue v-edges to u-edges, forbid the labels.
-    """
+    glue v-edges to u-edges, forbid the labels."""
     faces = slow_grid(4, 4).tolist()
     ends = [((4, 0), (4, 1), (3, 4), (2, 4)), ((4, 2), (4, 3), (1, 4), (0, 4))]
     for k, corners in enumerate(ends):

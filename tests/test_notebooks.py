@@ -2,8 +2,7 @@
 
 The copy writes its figures beside itself.  Stored text, pictures and figures must be what the
 rerun shows, within the tolerances of `inetlib.same`; what may differ more says so by a tag (see
-tools/outputs.py).  Pictures of another matplotlib than the pinned one need only look alike.
-"""
+tools/outputs.py).  Pictures of another matplotlib than the pinned one need only look alike."""
 
 import base64
 import io

@@ -168,8 +168,7 @@ def angle_error(lam, mu):
     """Error of theta and theta0 relative to the angle or its supplement, whichever is less.
 
     The supplement of an angle near pi cannot be known better than the spacing of doubles
-    there, 4.4e-16; that much is taken off.
-    """
+    there, 4.4e-16; that much is taken off."""
     worst = 0
     for found, exact in zip(parallelogram.angles(lam, mu), exact_angles(lam, mu), strict=True):
         off = abs(mpmath.mpf(float(found)) - exact)
@@ -185,8 +184,7 @@ def test_angles_lose_digits_only_as_the_rounding_of_the_ratios_themselves_would(
 
     An angle near 0 is proportional to the root of the product of the four factors.  One last
     place of lam and of mu changes a factor by up to eps (lam + 1) (mu + 1), so rounded ratios
-    determine the angle no better than `lost`; the formula must not lose much more.
-    """
+    determine the angle no better than `lost`; the formula must not lose much more."""
     eps = np.finfo(float).eps
     with DIGITS:
         for lam, mu in near_border(gap):

@@ -1,8 +1,7 @@
 """Ctrl-C at any moment: one sentence, 130, nothing half written, no process left.
 
 Moments are not waited for but made: the process raises the signal itself, when it loads a
-module, opens a file or starts another process (audit events), or in a function put in place.
-"""
+module, opens a file or starts another process (audit events), or in a function put in place."""
 
 import os
 import re
