@@ -106,11 +106,6 @@ def square_conic(point: Number, direction: Number) -> tuple[Number, ...]:
     return t * t, -2 * s * t, s * s, -4 * h**2 * s, -4 * h**2 * t, -4 * h**4
 
 
-def square_bezier(start: Number, end: Number) -> tuple[Number, Number, Number]:
-    """Control points of the Bezier curve ((1-t) s + t e)^2.  Paper: App. A.2, Fig. 3."""
-    return start**2, start * end, end**2
-
-
 def image_lines(f: Callable, z: np.ndarray, samples: int = 33) -> tuple[np.ndarray, np.ndarray]:
     """The two families of grid lines under a map f of complex arrays, finely sampled.
 

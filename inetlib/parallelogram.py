@@ -225,29 +225,6 @@ def from_rho(rho: Number) -> Shape:
     return Shape(abs(diagonal), 1 / abs(rho), np.angle(diagonal), np.angle(rho))
 
 
-def mu_circle(mu: Number) -> tuple[Number, Number]:
-    """Centre and radius of the circle of all rho with this mu.  Paper: B2."""
-    return 0 * mu, 1 / mu
-
-
-def lam_circle(lam: Number) -> tuple[Number, Number]:
-    """Centre and radius of the circle of all rho with this lam, not 1.  Paper: B2."""
-    if np.any(lam == 1):
-        raise ValueError("lam = 1: the imaginary axis, no circle")
-    return (lam**2 + 1) / (lam**2 - 1), 2 * lam / abs(lam**2 - 1)
-
-
-def theta_circle(theta: Number) -> tuple[Number, Number]:
-    """Height of the centre and radius of the circle; its upper arc has this theta.  Paper: B2."""
-    xp = library(theta)
-    return -xp.cos(theta) / xp.sin(theta), 1 / xp.sin(theta)
-
-
-def equal_circle() -> tuple[float, float]:
-    """Centre and radius of the circle of all rho with theta = theta0, lam = mu.  Paper: B2."""
-    return -1, np.sqrt(2)
-
-
 def directions(rho: Number) -> tuple[Number, Number, Number, Number]:
     """The lines X_u, Y_v, X_v, Y_u, complex, counter-clockwise mod pi.  Paper: B10."""
     return 1 + 0 * rho, 1 + rho, rho, 1 - rho

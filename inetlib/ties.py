@@ -35,11 +35,6 @@ def nearest_whole(x: ArrayLike) -> np.ndarray:
     return np.ceil(np.asarray(x) - 0.5 - TIE).astype(np.int64)
 
 
-def next_multiple(x: float, step: float) -> float:
-    """The next multiple of a step, which x itself is when it is one up to 1e-9 of the step."""
-    return float(np.ceil(x / step - TIE) * step)
-
-
 def ranks(values: ArrayLike, tolerance: float) -> np.ndarray:
     """0 for the smallest numbers, 1 for the next ones, ...; neighbours within it share a rank."""
     values = np.asarray(values)

@@ -80,9 +80,9 @@ def test_four_shapes_contain_the_regular_three_web(pair):
 def test_every_point_lies_on_its_four_curves():
     rho = many()
     lam, mu, theta, theta0 = parallelogram.from_rho(rho)
-    for centre, radius in (parallelogram.mu_circle(mu), parallelogram.lam_circle(lam)):
+    for centre, radius in (beyond_rho.mu_circle(mu), beyond_rho.lam_circle(lam)):
         assert np.allclose(np.abs(rho - centre), radius, rtol=1e-8)
-    height, radius = parallelogram.theta_circle(theta)
+    height, radius = beyond_rho.theta_circle(theta)
     assert np.allclose(np.abs(rho - 1j * height), radius, rtol=1e-8)
     assert np.allclose(np.abs(1 - 1j * height), radius)  # the circle passes through 1
     assert np.allclose(np.angle(rho), theta0)
@@ -97,20 +97,20 @@ def test_the_curves_are_proved_with_symbols():
     assert sp.simplify((x - centre) ** 2 + y**2 - radius2) == 0
     height = -re / im  # -cot theta
     assert sp.simplify(x**2 + (y - height) ** 2 - 1 - height**2) == 0
-    assert sp.simplify(parallelogram.theta_circle(sp.pi / 2)[0]) == 0
+    assert sp.simplify(beyond_rho.theta_circle(sp.pi / 2)[0]) == 0
 
 
 def test_equal_angles_lie_on_one_circle_and_nowhere_else():
     rho = many()
     shape = parallelogram.from_rho(rho)
-    centre, radius = parallelogram.equal_circle()
+    centre, radius = beyond_rho.equal_circle()
     inside = np.abs(rho - centre) < radius
     assert np.array_equal(inside, shape.lam < shape.mu) and 0.1 < inside.mean() < 0.9
     for degrees in (20, 60, 135):
         lam, mu = parallelogram.ratios(degrees * DEGREE, degrees * DEGREE)
         assert abs(parallelogram.rho(lam, mu) - centre) == pytest.approx(radius)
     with pytest.raises(ValueError, match="imaginary axis"):
-        parallelogram.lam_circle(1)
+        beyond_rho.lam_circle(1)
 
 
 def right_way_up(V, Q):

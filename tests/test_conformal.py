@@ -7,6 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from inetlib import conformal, measure, mesh
+from inetlib.drawings import fig03
 
 T, T0 = np.radians(60), np.radians(45)
 angle = st.floats(0.1, np.pi - 0.1)
@@ -182,7 +183,7 @@ def test_square_conics_have_the_printed_coefficients():
 
 @given(point, point)
 def test_the_square_bezier_curve_is_the_mapped_segment(start, end):
-    b0, b1, b2 = conformal.square_bezier(start, end)
+    b0, b1, b2 = fig03.square_bezier(start, end)
     t = np.linspace(0, 1, 11)
     curve = (1 - t) ** 2 * b0 + 2 * t * (1 - t) * b1 + t**2 * b2
     np.testing.assert_allclose(curve, ((1 - t) * start + t * end) ** 2, atol=1e-12)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inetlib import plot, ties
-from inetlib.drawings import revolution
+from inetlib.drawings import patches, revolution
 
 HALVES = np.array([0, 0, 1, 1, 2, 2, 3, 3, 4])  # of 0, 0.5, 1, ...: halves go down
 
@@ -41,9 +41,9 @@ def test_other_numbers_are_decided_by_size():
 
 def test_the_next_multiple_is_the_number_itself_up_to_rounding():
     for noise in (-1e-13, 0.0, 1e-13):
-        assert ties.next_multiple(30 * (1 + noise), 5) == 30
-    assert ties.next_multiple(30 + 1e-6, 5) == 35
-    assert ties.next_multiple(1.15, 0.1) == pytest.approx(1.2)
+        assert patches.next_multiple(30 * (1 + noise), 5) == 30
+    assert patches.next_multiple(30 + 1e-6, 5) == 35
+    assert patches.next_multiple(1.15, 0.1) == pytest.approx(1.2)
 
 
 @pytest.mark.parametrize("seed", range(4))

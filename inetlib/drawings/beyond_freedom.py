@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import mesh, plot, reference, solver, surfaces, ties
+from .. import mesh, plot, reference, solver, surfaces
 from ..plot import DEGREE
 from ..solver.problem import Weights
 from . import drawn, patches
@@ -67,7 +67,7 @@ def draw(theta=75 * DEGREE, theta0=75 * DEGREE, azimuth=-65 * DEGREE, elevation=
     view = plot.camera(azimuth, elevation)
     found, stay = nets(theta, theta0), curves()
     off = {k: patches.deviation(r.V, Q, theta, theta0) for k, (_, Q, r) in found.items()}
-    scale = Normalize(0, ties.next_multiple(off["F"].max(), 5))
+    scale = Normalize(0, patches.next_multiple(off["F"].max(), 5))
     data, exact, claims = {}, [], {f"{k} converged": x[2].converged for k, x in found.items()}
     for letter, (V, Q, result) in found.items():
         rim = np.append(stay[letter], stay[letter][:1])

@@ -22,6 +22,29 @@ WIDE, HIGH = 2.45, 2.3  # the window
 EQUAL = "#7b2d8b"
 
 
+def mu_circle(mu):
+    """Centre and radius of the circle of all rho with this mu.  Paper: B2."""
+    return 0 * mu, 1 / mu
+
+
+def lam_circle(lam):
+    """Centre and radius of the circle of all rho with this lam, not 1.  Paper: B2."""
+    if np.any(lam == 1):
+        raise ValueError("lam = 1: the imaginary axis, no circle")
+    return (lam**2 + 1) / (lam**2 - 1), 2 * lam / abs(lam**2 - 1)
+
+
+def theta_circle(theta):
+    """Height of the centre and radius of the circle; its upper arc has this theta.  Paper: B2."""
+    xp = parallelogram.library(theta)
+    return -xp.cos(theta) / xp.sin(theta), 1 / xp.sin(theta)
+
+
+def equal_circle():
+    """Centre and radius of the circle of all rho with theta = theta0, lam = mu.  Paper: B2."""
+    return -1, np.sqrt(2)
+
+
 @drawn()
 def draw(rho=0.95 + 1.15j):
     """The half plane with its four families and special points, and what one point rho means.
@@ -66,13 +89,13 @@ def half_plane(ax, rho):
 
     Paper: B2."""
     ax.set(xlim=(-WIDE, WIDE), ylim=(-0.34, HIGH), autoscale_on=False)
-    thin = [("u", _half(*parallelogram.mu_circle(ratio))) for ratio in RATIOS]
-    thin += [("d1", _half(*parallelogram.lam_circle(ratio))) for ratio in RATIOS if ratio != 1]
+    thin = [("u", _half(*mu_circle(ratio))) for ratio in RATIOS]
+    thin += [("d1", _half(*lam_circle(ratio))) for ratio in RATIOS if ratio != 1]
     for angle in ANGLES:
         thin += [("v", _ray(angle * DEGREE)), ("d2", _arc(angle * DEGREE))]
     for family, z in thin:
         plot.curves(ax, [z], COLOURS[family], 0.6)
-    centre, radius = parallelogram.equal_circle()
+    centre, radius = equal_circle()
     plot.curves(ax, [_half(centre, radius)], EQUAL, 1.3, (0, (4, 2)), zorder=3)
     place, words = centre + radius * np.exp(1.97j), r"$\theta=\theta_0$"
     plot.text(ax, place, words, 8, 2.5, EQUAL, zorder=8)
@@ -97,7 +120,7 @@ def _ray(theta0):
 
 
 def _arc(theta):
-    height, radius = parallelogram.theta_circle(theta)
+    height, radius = theta_circle(theta)
     start = np.arctan2(-height, np.sqrt(max(radius**2 - height**2, 0)))
     return 1j * height + radius * np.exp(1j * np.linspace(start, np.pi - start, 241))
 
@@ -106,8 +129,8 @@ def _chosen(ax, rho):
     """The point rho and its four curves, with their values at the edges of the window."""
     lam, mu, theta, theta0 = parallelogram.from_rho(rho)
     straight = abs(lam - 1) <= 1e-9
-    last = np.array([0, 4j]) if straight else _half(*parallelogram.lam_circle(lam))
-    bold = {"u": _half(*parallelogram.mu_circle(mu)), "v": _ray(theta0), "d2": _arc(theta)}
+    last = np.array([0, 4j]) if straight else _half(*lam_circle(lam))
+    bold = {"u": _half(*mu_circle(mu)), "v": _ray(theta0), "d2": _arc(theta)}
     for family, z in (bold | {"d1": last}).items():
         plot.curves(ax, [z], COLOURS[family], 2, zorder=4)
     ax.plot(rho.real, rho.imag, "o", color=plot.INK, ms=7, mec="white", zorder=9)

@@ -67,10 +67,15 @@ def _lines(z):
     return (z[0], z[-1]), (z[:, 0], z[:, -1])
 
 
+def square_bezier(start, end:
+    """Control points of the Bezier curve ((1-t) s + t e)^2.  Paper: App. A.2, Fig. 3."""
+    return start**2, start * end, end**2
+
+
 def _parabolas(z):
     """The images of the lines of a grid under z^2, exact quadratic Bezier curves: two families."""
     codes = [Path.MOVETO, Path.CURVE3, Path.CURVE3]
-    points = [np.transpose(conformal.square_bezier(*ends)) for ends in _lines(z)]
+    points = [np.transpose(square_bezier(*ends)) for ends in _lines(z)]
     return [[Path(plot.plane(p), codes) for p in family] for family in points]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import plot, reference, solver, surfaces, ties
+from .. import plot, reference, solver, surfaces
 from ..plot import DEGREE
 from . import drawn, patches
 
@@ -47,7 +47,7 @@ def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     data = {"start": V} | {f"net_{letter}": r.V for letter, r in found.items()}
     off = {"start": patches.deviation(V, Q)}
     off |= {k: patches.deviation(r.V, Q, r.theta, r.theta0) for k, r in found.items()}
-    scale = Normalize(0, ties.next_multiple(off["start"].max(), 5))
+    scale = Normalize(0, patches.next_multiple(off["start"].max(), 5))
     i, j = np.meshgrid(m // 2 - np.arange(2), n // 2 - np.arange(2), indexing="ij")
     four = (i * n + j).ravel()  # faces in the middle
     for (name, ax), W in zip(axes.items(), data.values(), strict=True):

@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.colors import Normalize
 
-from .. import mesh, moebius, plot, reference, solver, ties
+from .. import mesh, moebius, plot, reference, solver
 from ..plot import DEGREE
 from . import drawn, patches
 
@@ -53,7 +53,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     inversion = moebius.inversion(CENTRE, RADIUS)
     images = {letter: moebius.apply(inversion, r.V) for letter, r in found.items()}
     off = {k: patches.deviation(W, Q, found[k].theta, found[k].theta0) for k, W in images.items()}
-    scale = Normalize(0, ties.next_multiple(max(x.max() for x in off.values()), 0.1))
+    scale = Normalize(0, patches.next_multiple(max(x.max() for x in off.values()), 0.1))
     four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
     axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")

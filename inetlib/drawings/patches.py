@@ -5,7 +5,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, to_rgb
 from matplotlib.ticker import MaxNLocator
 
-from .. import measure, mesh, plot
+from .. import measure, mesh, plot, ties
 from ..solver.problem import Weights
 
 # A tenth of the printed weights: with those the paper's formulation ends degrees off the
@@ -103,6 +103,11 @@ def align(axes, below):
         x, top = (box.x0 + box.x1) / 2, box.y1
         ax.set_anchor("NW")
         ax.set(xlim=(x - width / 2, x + width / 2), ylim=(top - (1 + below) * height, top))
+
+
+def next_multiple(x, step:
+    """The next multiple of a step, which x itself is when it is one up to 1e-9 of the step."""
+    return float(np.ceil(x / step - ties.TIE) * step)
 
 
 def claims(name, result, Q):
