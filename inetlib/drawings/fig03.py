@@ -67,7 +67,7 @@ def _lines(z):
     return (z[0], z[-1]), (z[:, 0], z[:, -1])
 
 
-def square_bezier(start, end:
+def square_bezier(start, end):
     """Control points of the Bezier curve ((1-t) s + t e)^2.  Paper: App. A.2, Fig. 3."""
     return start**2, start * end, end**2
 

@@ -105,7 +105,7 @@ def align(axes, below):
         ax.set(xlim=(x - width / 2, x + width / 2), ylim=(top - (1 + below) * height, top))
 
 
-def next_multiple(x, step:
+def next_multiple(x, step):
     """The next multiple of a step, which x itself is when it is one up to 1e-9 of the step."""
     return float(np.ceil(x / step - ties.TIE) * step)
 
