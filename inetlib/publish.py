@@ -6,34 +6,15 @@ import json
 import os
 import zipfile
 from pathlib import Path
-from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
 import PIL.Image
-from matplotlib.figure import Figure
 
-from . import files, measure, same
+from . import files
+from .drawings import Drawing, deviations, rounded, same
 
 DIGITS = 7  # decimals of the data that are stored
-
-
-class Drawing(NamedTuple):
-    """A finished figure and what stands behind it."""
-
-    name: str  # of its files
-    figure: Figure
-    function: str  # that drew it, as a dotted name
-    parameters: dict  # {name: number}, what the function was called with
-    data: dict  # {name: array}, the geometry drawn
-    nets: list  # (V, Q, theta, theta0) of each net shown, its angles in radians
-    claims: dict  # {name: number or text}, what the figure states
-
-
-def deviations(nets) -> np.ndarray:
-    """Largest deviations of theta and theta0 of (V, Q, theta, theta0) tuples, radians; or nan."""
-    found = [measure.deviations(*net).max(axis=1) for net in nets]
-    return np.max(found, axis=0) if nets else np.full(2, np.nan)
 
 
 def save(drawing: Drawing, folder) -> dict:
@@ -80,12 +61,6 @@ def _plain(array):
     if np.iscomplexobj(array):
         array = np.stack([array.real, array.imag], axis=-1)
     return np.round(array.astype("<f8"), DIGITS) + 0.0
-
-
-def rounded(value):
-    """What JSON makes of dicts, lists, numbers and words, floats rounded to 1e-9."""
-    text = json.dumps(value, allow_nan=False)
-    return json.loads(text, parse_float=lambda digits: round(float(digits), 9) + 0.0)
 
 
 def _hash(path):

@@ -16,7 +16,8 @@ import nbformat
 import outputs  # tools/outputs.py
 import pytest
 
-from inetlib import publish, same
+from inetlib import publish
+from inetlib.drawings import same
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))

@@ -21,7 +21,7 @@ MODULES = sorted(
     for path in (ROOT / "inetlib").glob("**/*.py")
     if path.parent.name != "inetlib" or path.stem != "__init__"
 )
-PICTURES = {"drawings", "explorer", "plot", "publish", "same", "view"}  # not the library proper
+PICTURES = {"drawings", "explorer", "plot", "publish", "view"}  # not the library proper
 
 
 def tracked():

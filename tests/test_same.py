@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inetlib import plot, same
+from inetlib import plot
+from inetlib.drawings import same
 
 PAIRS = {  # texts, and whether they say the same
     ("60.000 degrees", "60.001 degrees"): True,

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import matplotlib
 
-from inetlib import same, view
+from inetlib import view
+from inetlib.drawings import same
 
 ROOT = Path(__file__).resolve().parent.parent
 PINNED = (  # another matplotlib than that of constraints.txt draws otherwise

@@ -2,15 +2,42 @@
 
 import functools
 import inspect
+import json
+from typing import NamedTuple
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from .. import publish
+from .. import measure
+
+
+class Drawing(NamedTuple):
+    """A finished figure and what stands behind it."""
+
+    name: str  # of its files
+    figure: Figure
+    function: str  # that drew it, as a dotted name
+    parameters: dict  # {name: number}, what the function was called with
+    data: dict  # {name: array}, the geometry drawn
+    nets: list  # (V, Q, theta, theta0) of each net shown, its angles in radians
+    claims: dict  # {name: number or text}, what the figure states
+
+
+def deviations(nets) -> np.ndarray:
+    """Largest deviations of theta and theta0 of (V, Q, theta, theta0) tuples, radians; or nan."""
+    found = [measure.deviations(*net).max(axis=1) for net in nets]
+    return np.max(found, axis=0) if nets else np.full(2, np.nan)
+
+
+def rounded(value):
+    """What JSON makes of dicts, lists, numbers and words, floats rounded to 1e-9."""
+    text = json.dumps(value, allow_nan=False)
+    return json.loads(text, parse_float=lambda digits: round(float(digits), 9) + 0.0)
 
 
 def drawn(*degrees):
     """A decorator for `draw` of a module: what it returns, (figure, data, nets, claims), as a
-    `publish.Drawing` of the module's name, with those arguments of the call that are numbers.
+    `Drawing` of the module's name, with those arguments of the call that are numbers.
 
     degrees: names of angles that are radians in the call, and noted in degrees."""
 
@@ -25,9 +52,7 @@ def drawn(*degrees):
             noted = {name: _noted(x, name in degrees) for name, x in given.arguments.items()}
             noted = {name: x for name, x in noted.items() if x is not None}
             name, function = module.rpartition(".")[2], f"{module}.{draw.__name__}"
-            return publish.Drawing(
-                name, figure, function, noted, data, nets, publish.rounded(claims)
-            )
+            return Drawing(name, figure, function, noted, data, nets, rounded(claims))
 
         return whole
 
@@ -48,4 +73,4 @@ def _noted(value, in_degrees=False):
 
 def worst(V, Q, angles):
     """The larger deviation of a net from its two angles, over all faces: degrees, 6 decimals."""
-    return round(float(np.degrees(publish.deviations([(V, Q, *angles)]).max())), 6)
+    return round(float(np.degrees(deviations([(V, Q, *angles)]).max())), 6)

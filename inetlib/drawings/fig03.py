@@ -5,9 +5,9 @@ from matplotlib.collections import PathCollection
 from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
-from .. import conformal, parallelogram, plot, publish
+from .. import conformal, parallelogram, plot
 from ..plot import DEGREE
-from . import drawn
+from . import deviations, drawn
 
 ROWS = [["A", "B", "C"], ["A'", "B'", "C'"], ["C_1", "C_2", "C_3"]]
 MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in range(height)]
@@ -161,7 +161,7 @@ def _claims(angles, nets):
         _, mu = parallelogram.ratios(theta, theta0)
         claims[f"{name}: h = sin(theta0) / mu"] = np.sin(theta0) / mu
     for name in ("A'", "C1"):
-        off = np.degrees(publish.deviations([nets[name]]))
+        off = np.degrees(deviations([nets[name]]))
         for what, x in zip(("theta", "theta0"), off.round(6), strict=True):
             claims[f"{name}: max deviation of {what}, deg (1/z is not exact)"] = x
     return claims
