@@ -44,8 +44,6 @@ def test_a_number_a_last_bit_away_prints_the_same(x, digits):
 
 
 CLAIMS = {"steps": 7, "good": True, "theta": 60.0, "words": "all", "list": [0.25, None]}
-
-
 CLOSE = [{}, {"theta": 59.999999}, {"list": (0.26, None)}]
 DIFFERENT = [{"steps": 8}, {"steps": 7.0}, {"good": 1}, {"theta": 59.998}, {"theta": 61.0}]
 DIFFERENT += [{"words": "some"}, {"list": [0.27, None]}, {"list": [0.25]}, {"more": 1}]
