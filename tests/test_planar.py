@@ -225,7 +225,6 @@ HELD = {"handles": ([1, 2], [0, 1])}
         (HELD | {"smooth": 0}, "smooth = 0"),
         (HELD | {"smooth": -1}, "smooth = -1"),
         (HELD | {"theta": 60}, "radians"),
-        (HELD | {"theta": np.nan}, "radians"),
         (HELD | {"theta": [T, T]}, "one number"),
         (HELD | {"Q": GRID[:, :3]}, "quads are wanted"),
         (HELD | {"Q": GRID[:0]}, "no faces"),

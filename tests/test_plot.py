@@ -24,17 +24,12 @@ def ax():
     plt.close(figure)
 
 
-def lightness(colour):
-    """CIE L* of an sRGB colour, 0 black to 100 white."""
-    rgb = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) / 255
-    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
-    return 116 * (linear @ [0.2126, 0.7152, 0.0722]) ** (1 / 3) - 16
-
-
 def test_the_four_families_can_be_told_apart_in_greyscale():
     assert list(plot.COLOURS) == ["u", "v", "d1", "d2"]
-    steps = np.diff(sorted(lightness(c) for c in plot.COLOURS.values()))
-    assert (steps > 7).all()
+    rgb = np.array([to_rgba(colour)[:3] for colour in plot.COLOURS.values()])
+    linear = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
+    lightness = 116 * (linear @ [0.2126, 0.7152, 0.0722]) ** (1 / 3) - 16  # CIE L*, 0 to 100
+    assert (np.diff(np.sort(lightness)) > 7).all()
 
 
 def test_words(ax):

@@ -262,7 +262,6 @@ def test_a_caller_can_watch_stop_and_limit_and_sees_a_bar_on_request(capsys):
         ({"Q": np.concatenate([QUADS[:1], np.roll(QUADS[1:], 1, 1)])}, "label"),
         ({"V": np.full((25, 3), np.nan)}, "not a finite"),
         ({"V": np.zeros((25, 3))}, "length zero|no area"),
-        ({"theta0": np.nan}, "theta0"),
         ({"weights": problem.Weights(fairness=-1.0)}, "fairness = -1"),
         ({"weights": problem.Weights(closeness=np.nan)}, "closeness"),
         ({"weights": problem.Weights(boundary=np.ones(3))}, "boundary has the shape"),
