@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from inetlib import conformal, measure, mesh
-from inetlib.drawings import fig03
+from inetlib.drawings import beyond_planar, fig03
 
 T, T0 = np.radians(60), np.radians(45)
 angle = st.floats(0.1, np.pi - 0.1)
@@ -60,10 +60,7 @@ def test_origin_edge_and_direction_are_kept(theta, theta0, origin, edge, directi
     np.testing.assert_allclose(z, z[:1, :] + z[:, :1] - origin, atol=1e-12 * (9 + 9 * abs(v)))
 
 
-def test_cells_have_the_height_sin_theta_over_lam_and_compensated_ones_tend_to_them():
-    z = conformal.sheared_grid(T, T, 1, 1)  # not lam sin theta, as printed in App. A.2
-    golden = (1 + 5**0.5) / 2
-    assert z[0, 1].imag == pytest.approx(np.sin(T) / golden, rel=1e-14)
+def test_compensated_cells_tend_to_plain_ones():
     plain = conformal.sheared_grid(T, T0, 1, 1, edge=1e-3)
     for kappa in (1, -1, 2 + 1j):
         bent = conformal.sheared_grid(T, T0, 1, 1, edge=1e-3, kappa=kappa)
@@ -254,6 +251,10 @@ WRONG = [
     (conformal.moebius, ([[1, np.nan], [0, 1]], POINTS), "2 x 2 matrix of finite"),
     (conformal.moebius, ([[0, 1], [1, 0]], 0), "lies on the pole 0"),
     (conformal.moebius, ([[1, 0], [1, 1 - 2j]], NET), r"z\[1, 1\] lies on the pole -1\+2j of"),
+    (conformal.cell_errors, (np.exp, 0, 1, 2), "not parallel"),
+    (conformal.leading_errors, (0, 1, 1, 1j), "not conformal"),
+    (conformal.kappa, (sympy.Integer(3), sympy.Symbol("z")), "does not depend"),
+    (beyond_planar.annulus, (T, T, 30), "multiple of 4"),
     *((conformal.moebius_through, (bad, [0, 1, 2]), "three distinct") for bad in TWICE),
     *((conformal.moebius_through, ([0, 1, 2], bad), "three distinct") for bad in TWICE),
 ]

@@ -348,8 +348,6 @@ def test_rolled_grids_close_tend_to_sheared_ones_and_are_sheared_ones_at_curvatu
 NAN = np.array([[0, 1], [1j, np.nan]])
 INFLECTED = [[0, 0, 0], [1, 2, 0], [3, -2, 0], [4, 0, 0.0]]
 SHEET = T, T0, 3, 3
-
-
 LAST = SPACE.length - 0.01 + np.array([0, -3j])
 WRONG = [
     (developable.roll, (NAN, 1), r"grid point \(1, 1\) is not a finite"),

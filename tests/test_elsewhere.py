@@ -112,21 +112,6 @@ def test_figures_are_rewritten_when_all_that_is_drawn_is_off_by_more(tmp_path):
     assert all({"svg", "png"} <= set(words) for words in found.values())
 
 
-def test_one_parameter_rewrites_one_figure(tmp_path):
-    """The check can fail: a drawing that is meant to differ is not kept."""
-    from inetlib.drawings import fig04, fig08
-
-    figures = tmp_path / "figures"
-    shutil.copytree(ROOT / "figures", figures)
-    before = {path: path.read_bytes() for path in figures.rglob("*") if path.is_file()}
-    publish.save(fig04.draw(), figures)
-    assert not outputs.PINNED or before == {path: path.read_bytes() for path in before}
-    publish.save(fig08.draw(rows=6), figures)
-    changed = {path.name for path in before if path.read_bytes() != before[path]}
-    changed -= {"fig04.svg", "fig04.png"}
-    assert changed == {"fig08.svg", "fig08.png", "fig08.npz", "manifest.json"}
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["default", "all of them"])
 def test_all_notebooks_twice_in_another_folder_change_no_file(name, tmp_path, somebody):

@@ -334,15 +334,8 @@ def test_closings_fulfil_the_closing_condition_find_a_closed_web_again_and_tie_b
 
 
 METHODS = ["exact", "smooth", "paper"]
-
-
-METHODS = ["exact", "smooth", "paper"]
 BAD = [0, np.pi, -1.0, 60.0, np.nan, np.inf]
-
-
 GLOBE = surfaces.sphere_profile(start=-np.pi / 2, stop=np.pi / 2 + 0.1)
-
-
 TORI = [(1, 1), (1, 2), (2, -1), (np.nan, 1), (np.inf, 1)]
 TURNS = [(2, 12, 1), (12, 2, 1), (12, 12, 0.5), (12, 12, np.nan)]
 WRONG = [

@@ -205,8 +205,6 @@ def test_sizes_that_make_no_mesh_are_refused(make, size):
 
 PLANE, GRID = positions(2, 2), slow_grid(2, 2)
 HOLE = np.where(np.arange(9) == 5, np.nan, 0)[:, None]
-
-
 FLAPS = [[0, 1, 2, 3], [1, 0, 4, 5], [0, 1, 6, 7]]
 OVER = np.concatenate([GRID[:2], GRID[2:3, ::-1], GRID[3:]])
 BAD = {

@@ -10,12 +10,8 @@ from inetlib import moebius, reference, surfaces
 from inetlib.surfaces import CATENOID, CYLINDER, SPHERE
 
 TAU = 2 * np.pi
-
-
 TURN = Rotation.from_rotvec([0.4, -0.7, 1.1])
 ROUND = SPHERE.point, (0, TAU), (-1, 1)
-
-
 RNG = np.random.default_rng()
 
 

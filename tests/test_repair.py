@@ -127,8 +127,6 @@ NEVER = {  # no manifold
     r"vertex 0, near \(1, 0, 0\), form two fans: not a manifold": pinched,
     r"triangle \[1, 7, 8\] near \(0, 0\.166667, 0\) has no area": lambda: FLAT,
 }
-
-
 TWO = [np.concatenate([X, X + shift]) for X, shift in zip(plate(), (5, 49), strict=True)]
 ELSE = {  # no disk and no ring
     "has 0 boundary loops and 1 handles": torus,
@@ -136,8 +134,6 @@ ELSE = {  # no disk and no ring
     "has 3 boundary loops and 0 handles": lambda: holes([0.5, 0.3], [1.4, 0.7]),
     r"has 2 separate pieces \(of 72, 72 faces\)": lambda: TWO,
 }
-
-
 BROKEN = {
     "vertex 5 has a coordinate that is not a finite number": lambda: changed(5, np.nan),
     "the mesh has no faces": lambda: (np.zeros((0, 3)), np.zeros((0, 3), int)),

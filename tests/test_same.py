@@ -44,8 +44,6 @@ def test_a_number_a_last_bit_away_prints_the_same(x, digits):
 
 
 CLAIMS = {"steps": 7, "good": True, "theta": 60.0, "words": "all", "list": [0.25, None]}
-
-
 CLOSE = [{}, {"theta": 59.999999}, {"list": (0.26, None)}]
 DIFFERENT = [{"steps": 8}, {"steps": 7.0}, {"good": 1}, {"theta": 59.998}, {"theta": 61.0}]
 DIFFERENT += [{"words": "some"}, {"list": [0.27, None]}, {"list": [0.25]}, {"more": 1}]
@@ -62,16 +60,13 @@ def test_claims_are_the_same_within_their_last_digit_or_differ():
 DATA = {"V": np.arange(12.0).reshape(4, 3), "w": np.array([0.5, -20.0])}
 
 
-def test_data_are_compared_by_the_size_of_the_figure():
+def test_data_are_compared_by_the_size_of_the_figure_and_those_that_differ_are_named():
     near = {name: x + 1e-5 for name, x in DATA.items()}  # the size is 20.5
     assert same.data(DATA, near) == []
     far = DATA | {"V": DATA["V"] + 3e-5 * np.eye(4, 3)}
     assert same.data(DATA, far) == ["V"]
     small = {name: x / 1000 for name, x in DATA.items()}
     assert same.data(small, {name: x + 1e-5 for name, x in small.items()}) == ["V", "w"]
-
-
-def test_data_that_differ_are_named():
     for change in (
         {"V": DATA["V"].reshape(3, 4)},
         {"V": DATA["V"][::-1]},  # another order

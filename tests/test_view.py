@@ -154,7 +154,7 @@ def share(image, colour):
     return np.mean(near & (hsv[..., 1] > 0.5))
 
 
-def test_a_picture_is_white_around_a_net_in_four_colours(opengl):
+def test_a_picture_is_white_around_a_net_in_four_colours_or_those_that_are_chosen(opengl):
     image = drawn(V, Q)
     assert image.shape == (view.SIZE[1], view.SIZE[0], 3) and image.dtype == np.uint8
     np.testing.assert_array_equal(image[[0, 0, -1, -1], [0, -1, 0, -1]], 255)
@@ -163,9 +163,6 @@ def test_a_picture_is_white_around_a_net_in_four_colours(opengl):
     indices = mesh.polylines(Q)  # curves may be points as well as vertex indices
     points = mesh.Families(*([V[line] for line in lines] for lines in indices))
     np.testing.assert_array_equal(drawn(V, Q, points), drawn(V, Q, indices))
-
-
-def test_an_empty_family_is_not_drawn_and_colours_can_be_chosen(opengl):
     families = mesh.polylines(Q)._replace(d1=[], v=[])
     image = drawn(V, Q, families, {"u": "#ff00ff"}, width=0.01)
     assert share(image, "#ff00ff") > 0.01 and share(image, plot.COLOURS["d2"]) > 0.01
