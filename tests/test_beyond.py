@@ -154,6 +154,9 @@ def test_counts_out_of_range_are_refused():
         for bad in ((2, 3), (6, 0), (5.5, 2)):
             with pytest.raises(ValueError, match="whole number"):
                 build(*bad)
+    for fixed in ([0.5], [99]):
+        with pytest.raises(ValueError, match="fixed: vertex numbers or a mask"):
+            freedom.count(*examples.vertex(4, 1), fixed)
 
 
 def test_the_names_disagree_somewhere_exactly_on_refused_meshes():

@@ -45,7 +45,10 @@ def count(
     if len(Q) > LARGEST:
         raise ValueError(f"{len(Q)} faces: at most {LARGEST} are wanted, take a coarser mesh")
     free = np.ones(len(V), dtype=bool)
-    free[list(fixed)] = False
+    try:
+        free[list(fixed)] = False
+    except IndexError as error:
+        raise ValueError(f"fixed: vertex numbers or a mask are wanted ({error})") from error
     J = jacobian(V, Q).toarray()[:, np.repeat(free, 3)]
     values = np.linalg.svd(J, compute_uv=False)
     rank = int(np.sum(values > tolerance * values[0]))
