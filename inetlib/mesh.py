@@ -371,7 +371,7 @@ def diagonal_meshes(Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     On a chessboard colouring, ValueError without one, Qa has the colour of vertex Q[0, 0]."""
     fan, Q = crossings(Q), check_quads(Q)
     start, end = half_edges(Q)
-    colour, loop = two_colour(Q.max() + 1, start, end, np.ones(start.size, dtype=bool))
+    colour, loop = two_colour(int(Q.max()) + 1, start, end, np.ones(start.size, dtype=bool))
     if loop is not None:
         raise ValueError(f"the vertices have no chessboard colouring: see the odd loop {loop}")
     tips = np.roll(end[fan], -1, axis=1)

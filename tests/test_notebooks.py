@@ -1,7 +1,7 @@
 """Every notebook is run from its first cell to its last by nbmake, on a copy, and compared.
 
-The copy writes its figures beside itself.  Stored text, pictures and figures must be what the
-rerun shows, within the tolerances of `inetlib.same`; what may differ more says so by a tag (see
+The copy writes its figures beside itself.  Stored text, pictures and figures must be what the rerun
+shows, within the tolerances of `inetlib.drawings.same`; what may differ more says so by a tag (see
 tools/outputs.py).  Pictures of another matplotlib than the pinned one need only look alike."""
 
 import base64
