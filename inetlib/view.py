@@ -60,7 +60,15 @@ def available() -> tuple[bool, str]:
     return True, "pyvista draws off screen here"
 
 
-def scene(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=False) -> Any:
+def scene(
+    V: np.ndarray,
+    Q: np.ndarray,
+    families: mesh.Families | None = None,
+    colours: dict | None = None,
+    width: float = 0.0035,
+    view: tuple = (-1.0, 0.5),
+    live: bool = False,
+) -> Any:
     """A `pyvista.Plotter` with the shaded faces of a net and its curves as tubes.
 
     V: (n, 3), Q: (f, 4).  families: `mesh.Families` of vertex indices (k,) or points (k, 3),

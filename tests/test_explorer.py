@@ -625,9 +625,9 @@ def test_all_formats_are_offered_others_refused_and_missing_packages_named(
         with pytest.raises(ValueError, match=r"\.svg.*\.obj"):
             vase.save(suffix)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    assert {s: session.missing(s) for s in session.SAVED if session.missing(s)} == PACKAGES
+    assert {s: io.missing(s) for s in session.SAVED if io.missing(s)} == PACKAGES
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: name)
-    assert not any(map(session.missing, session.SAVED))
+    assert not any(map(io.missing, session.SAVED))
 
 
 LOOKED = {

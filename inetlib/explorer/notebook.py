@@ -58,7 +58,15 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     return Live(address, picture, height)
 
 
-def turn(V, Q, families=None, colours=None, width=0.0035, view=(-1.0, 0.5), live=None) -> Any:
+def turn(
+    V: np.ndarray,
+    Q: np.ndarray,
+    families: mesh.Families | None = None,
+    colours: dict | None = None,
+    width: float = 0.0035,
+    view: tuple = (-1.0, 0.5),
+    live: bool | None = None,
+) -> Any:
     """The `view.scene` of a net for a reader, to be turned by hand, or as a still IPython Image.
 
     live: by default where there is a person: in JupyterLab as a `Live` page that the browser draws

@@ -9,9 +9,9 @@ from trame.widgets import client, html
 from trame.widgets import vuetify3 as v3
 from trame.widgets.vtk import VtkLocalView
 
-from ..io import WITH_CURVES
+from ..io import WITH_CURVES, missing
 from . import choices, look
-from .session import SAVED, missing
+from .session import SAVED
 
 FOLDER = files("inetlib.explorer")
 MIME = {".svg": "image/svg+xml", ".png": "image/png"}

@@ -12,7 +12,6 @@ from ..design import report
 from . import choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
-missing = io.missing
 
 
 class Session:
