@@ -46,6 +46,7 @@ COLUMNS = (
     ("peak MB", 8),
     ("max deg off", 12),
     ("flips", 6),
+    ("darts", 6),
     ("x step", 7),
     ("x angle", 8),
     ("x whole", 8),
@@ -63,8 +64,8 @@ def run_case(case, setting, quads, repeats):
     wanted = result.theta, result.theta0
     angles = measure.angles(result.V, Q)
     off = max(np.abs(a - b).max() for a, b in zip(angles, wanted, strict=True))
-    flips = len(measure.flipped(result.V, Q))
-    found |= {"off": float(np.degrees(off)), "flips": flips}
+    flips, darts = (len(f(result.V, Q)) for f in (measure.flipped, measure.nonconvex))
+    found |= {"off": float(np.degrees(off)), "flips": flips, "darts": darts}
     return found | {"quads": len(Q), "megabytes": megabytes()}
 
 
@@ -188,6 +189,7 @@ def row(case, setting, found, base):
         cell("megabytes", ".0f") if found["megabytes"] else "n/a",
         cell("off", ".1e"),
         cell("flips", ".0f"),
+        cell("darts", ".0f"),
         faster("step", "step"),
         faster("step", "angle"),
         faster("whole", "whole"),

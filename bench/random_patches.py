@@ -30,9 +30,9 @@ def patch(rng):
 
 
 def judge(V, Q, target):
-    """Whether all faces have the angles and none is flipped."""
-    off = max(np.abs(a - t).max() for a, t in zip(measure.angles(V, Q), target, strict=True))
-    return off <= TOLERANCE and measure.quality(V, Q).flips == 0
+    """Whether all faces have the angles and none is flipped or a dart."""
+    off, quality = measure.deviations(V, Q, *target).max(), measure.quality(V, Q)
+    return off <= TOLERANCE and quality.flips == 0 and quality.darts == 0
 
 
 def runs(patches, pairs, seed):

@@ -140,11 +140,16 @@ def _angle_options(command, words, required=False):
 
 def _write_options(command, keep):
     add = command.add_argument
-    text = "the net: .obj, .ply, .off, .vtp, .glb, .dxf or .3dm"
+    text = "the net: .obj, .ply, .off, .stl, .vtp, .glb, .dxf or .3dm"
     add("-o", "--output", required=True, metavar="FILE", help=text)
     text = "the four families of curves too, in .obj (.vtp, .glb, .dxf, .3dm always have them)"
     add("--curves", action="store_true", help=text)
     add("--force", action="store_true", help="replace the file if it is there")
+    units = "mm", "cm", "m", "in", "ft"
+    add("--unit", choices=units, help="of the coordinates, noted in .dxf and .3dm files")
+    add("--up", choices=("z", "y"), default="z", help="the axis upwards in the file (%(default)s)")
+    text = "in .dxf files: one mesh, or faces that more programs read (%(default)s)"
+    add("--dxf", choices=("mesh", "3dface"), default="mesh", help=text)
     if keep:
         text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
         add("--tolerance", type=_tolerance, default=least, metavar="DEG", help=text)
@@ -159,7 +164,7 @@ def _say_options(command, numbers=True):
 
 
 def _measure_options(command):
-    command.add_argument("net", help="a quad mesh: .obj, .ply, .off or .vtp")
+    command.add_argument("net", help="a quad mesh: .obj, .ply, .off, .vtp or .3dm")
     _angle_options(command, "; deviations are from it, or from the mean without it")
     _say_options(command)
 
@@ -175,8 +180,8 @@ def _measure(given):
 def _cover_options(command):
     from .examples import SURFACES
 
-    text = f"""a disk or a ring: a file .obj, .ply, .off, .stl, .vtp or .glb, or one of the
-        examples {", ".join(SURFACES)}"""
+    text = f"""a disk or a ring: a file .obj, .ply, .off, .stl, .vtp, .glb, .gltf or .3dm, or one
+        of the examples {", ".join(SURFACES)}"""
     command.add_argument("surface", help=text)
     _angle_options(command, "", required=True)
     size = command.add_mutually_exclusive_group()
@@ -184,6 +189,8 @@ def _cover_options(command):
     size.add_argument("--quads", type=_whole, default=1500, metavar="N", help=text)
     text = "or: the mean edge, in the unit of the surface's file"
     size.add_argument("--size", type=_positive, help=text)
+    text = "duplicate vertices stay: what was cut open on purpose stays open"
+    command.add_argument("--no-merge", action="store_true", help=text)
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
@@ -197,14 +204,15 @@ def _cover(given):
     if given.surface in examples.SURFACES:
         (V, F), repaired = examples.SURFACES[given.surface](), []
     else:
-        V, F, repaired = io.surface(given.surface)
+        V, F, repaired = io.surface(given.surface, merge=not given.no_merge)
     from . import design
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
     ways = {"tolerance": given.tolerance, "progress": _progress(given)}
     found = design.cover(V, F, *asked, **ways)
     about = found.report
-    notes = [f"{given.surface}: {x}" for x in dict.fromkeys([*repaired, *about.repairs])]
+    said = [*about.notes, *repaired, *about.repairs]
+    notes = [f"{given.surface}: {x}" for x in dict.fromkeys(said)]
     more = {"converged": about.converged, "message": about.message}
     return _finish(given, found.V, found.Q, (), about, notes, more)
 
@@ -263,7 +271,7 @@ def _profile(name):
 
 def _optimize_options(command):
     add = command.add_argument
-    add("net", help="a quad mesh: .obj, .ply, .off or .vtp")
+    add("net", help="a quad mesh: .obj, .ply, .off, .vtp or .3dm")
     _angle_options(command, "; of --theta, --theta0, --lam, --mu at most two")
     add("--lam", type=_positive, help="ratio of the diagonals, |d2| / |d1|")
     add("--mu", type=_positive, help="ratio of the medial lines, |m13| / |m24|")
@@ -361,17 +369,18 @@ def notebooks(folder: Path, name: str) -> list[str]:
 
 def _read_net(given, must_label=True):
     """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
-    from . import io, mesh
+    from . import io, mesh, repair
 
-    V, Q, polygons = io.net(given.net)
+    V, Q, polygons, notes = repair.welded(*io.net(given.net))
     try:
-        labelled, notes = mesh.label(Q), []
+        labelled = mesh.label(Q)
         if (labelled != Q).any():
-            notes = ["the faces did not agree on u and v: all are labelled like the first one now"]
+            notes += ["the faces did not agree on u and v: all are labelled like the first one now"]
     except ValueError as reason:
         if must_label:
             raise
-        labelled, notes = Q, [f"the numbers are those of the labels in the file: {reason}"]
+        labelled = Q
+        notes += [f"the numbers are those of the labels in the file: {reason}"]
     return V, labelled, polygons, notes + _turned(V, labelled, given.theta, given.theta0)
 
 
@@ -406,7 +415,8 @@ def _finish(given, V, Q, polygons, about, notes, more):
     if written:
         suffix = Path(given.output).suffix.lower()
         curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
-        io.write(given.output, V, Q, curves, polygons, given.force)
+        style = given.unit, given.dxf == "3dface", given.up
+        io.write(given.output, V, Q, curves, polygons, given.force, *style)
     _say(given, about, given.output if written else None, notes, **more)
     if good:
         return DONE

@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq, root
 
-from . import mesh, ties
+from . import measure, mesh, ties
 from .mesh import Families
 from .parallelogram import check_angle, check_positive, check_whole, from_rho, ratios
 from .surfaces import Profile, check_profile, mercator, revolve, torus_profile
 
 ENOUGH = "as many as asked for"
 FITS = 1e-12  # a last row that is too high by this part of it still fits: the rest is rounding
+MOST, MARCHED = 10_000_000, 5000  # quads of a web; rows that are found one by one
 AROUND = "d1", "u", "d2", "v"  # the four directions, counter-clockwise within half a turn
 
 
@@ -77,7 +78,7 @@ def web(
     theta, theta0 = _angle("theta", theta), _angle("theta0", theta0)
     m = check_whole("m", m, 3)
     n = None if n is None else check_whole("n", n)
-    _check_size(profile, theta, theta0, m, n)
+    _check_size(profile, theta, theta0, m, n, method)
     if method == "smooth":  # equal steps of the Mercator coordinate
         w_of_t, t_of_w = mercator(profile)
         step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
@@ -100,8 +101,10 @@ def web(
     slanted = (np.arange(m)[:, None] + up) % m
     curves = (np.vstack([index, index[:1]]).T, index, index[slanted, rows - up], index[slanted, up])
     families = Families(*([V[line] for line in lines] for lines in curves))
-    message = f"{rows}{asked} rows of {m} quads: {why}"
-    return Net(V, _quads(index[:, :-1], index[:, 1:]), families, rows, t, message, theta, theta0)
+    message, Q = f"{rows}{asked} rows of {m} quads: {why}", _quads(index[:, :-1], index[:, 1:])
+    if bad := len(np.union1d(measure.flipped(V, Q), measure.nonconvex(V, Q))):
+        message += f"; {bad} faces are flipped or darts: take a larger m"
+    return Net(V, Q, families, rows, t, message, theta, theta0)
 
 
 def _points(profile, m, t, turn):
@@ -115,13 +118,14 @@ def _quads(low, high):
     return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
-def _check_size(profile, theta, theta0, m, n):
-    """ValueError for webs of more than ten million quads, before memory and time run out."""
+def _check_size(profile, theta, theta0, m, n, method):
+    """ValueError for webs of too many quads or rows, before memory and time run out."""
     t = np.linspace(profile.start, profile.stop, 257)
     radius, height = profile.radius(t) + 0 * t, profile.height(t) + 0 * t
     width = np.sum(np.hypot(np.diff(radius), np.diff(height)) / radius[1:])
     rows = width * m * ratios(theta, theta0)[1] / (2 * np.pi * np.sin(theta0))
-    if m * min(rows, rows if n is None else n) > 1e7:
+    found = min(rows, rows if n is None else n)
+    if m * found > MOST or (found > MARCHED and method != "smooth"):
         raise ValueError(f"about {rows:.0f} rows of {m} quads fit: choose a smaller n or m")
 
 

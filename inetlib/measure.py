@@ -154,6 +154,9 @@ class Quality(NamedTuple):
 
     flips: int  # how many faces are flipped
     flipped: np.ndarray  # their normal d1 x d2 points against the mean one of their neighbours
+    darts: int  # how many faces are not convex
+    nonconvex: np.ndarray  # seen along d1 x d2 one of their corners turns the wrong way
+    corner: float  # the smallest angle at a corner, radians
     area_ratio: float  # smallest / largest area |d1 x d2| / 2
     aspect: float  # the largest ratio of the longer to the shorter medial line
     planarity: float  # the largest distance between the diagonals over their mean length
@@ -168,7 +171,31 @@ def quality(V: ArrayLike, Q: ArrayLike) -> Quality:
     v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
     apart = (np.abs(_dot(v2 - v1, normal)) / ((length1 + length2) / 2)).max()
     numbers = twice_area.min() / twice_area.max(), aspect, apart
-    return Quality(len(turned), turned, *map(float, numbers))
+    bent = nonconvex(V, Q)
+    corner = float(np.min(corners(V, Q)))
+    return Quality(len(turned), turned, len(bent), bent, corner, *map(float, numbers))
+
+
+def corners(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
+    """The angles between the edges at the corners v1 ... v4 of every face: (f, 4), in [0, pi]."""
+    V, Q = mesh.check_arrays(V, Q)
+    edges = [V[Q[:, k - 3]] - V[Q[:, k]] for k in range(4)]
+    return np.stack([_angle(-edges[k - 1], edges[k]) for k in range(4)], axis=1)
+
+
+def nonconvex(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
+    """The faces that are darts: seen along d1 x d2, their diagonals do not cross.
+
+    The angles know nothing of them, as they do not see where the diagonals lie.
+    """
+    d1, d2, _, m24 = vectors(V, Q)
+    v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
+    apart = v2 - v1 + m24  # from the middle of v1 v3 to the middle of v2 v4
+    one, two, both = _dot(d1, d1), _dot(d2, d2), _dot(d1, d2)
+    along, across = _dot(apart, d1), _dot(apart, d2)
+    # They cross at these parts of d1 and d2 from their middles, times |d1 x d2|^2.
+    parts = np.abs([along * two - across * both, along * both - across * one])
+    return np.flatnonzero((parts > (0.5 + 1e-9) * (one * two - both**2)).any(axis=0))
 
 
 def flipped(V: ArrayLike, Q: ArrayLike, neighbours: np.ndarray | None = None) -> np.ndarray:

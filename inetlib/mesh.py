@@ -332,13 +332,21 @@ def triangles(V: ArrayLike, F: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The mesh as triangles: (V float64, T (t, 3) int64); a quad is cut along its shorter diagonal.
 
     Triangles stay.  Quad k becomes the rows 2 k and 2 k + 1; equal diagonals (see `ties`): v1 v3.
+    Where only one diagonal lies inside, as in a dart, the quad is cut along that.
     """
     F = check_faces(F)
     V = _check_vertices(V, F)
     if F.shape[1] == 3:
         return V, F
-    d1, d2 = (np.linalg.norm(V[F[:, k + 2]] - V[F[:, k]], axis=1) for k in (0, 1))
-    corners = np.where(ties.at_most(d1, d2)[:, None], [0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3])
+    v1, v2, v3, v4 = V[F].transpose(1, 0, 2)
+    d1, d2 = v3 - v1, v4 - v2
+    normal = np.cross(d1, d2)
+    first = ties.at_most(np.linalg.norm(d1, axis=1), np.linalg.norm(d2, axis=1))
+    halves = ((v2 - v1, d1), (d1, v4 - v1)), ((v3 - v2, d2), (d2, v1 - v2))
+    areas = [[np.sum(np.cross(*half) * normal, axis=1) for half in both] for both in halves]
+    one, two = np.min(areas, axis=1) > 1e-9 * np.sum(normal**2, axis=1)  # lie inside
+    first = np.where(one == two, first, one)
+    corners = np.where(first[:, None], [0, 1, 2, 0, 2, 3], [0, 1, 3, 1, 2, 3])
     return V, np.take_along_axis(F, corners, axis=1).reshape(-1, 3)
 
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+LEAST = 1e-300  # smaller numbers have no reciprocal, or fewer digits
 Number = Any  # a float, an array of them that broadcasts, or a sympy expression
 
 
@@ -27,7 +28,7 @@ def library(*values: Number) -> ModuleType:
 
 def _check_below(name, value, limit, words):
     value = np.asarray(value, dtype=float)
-    bad = ~((value > 0) & (value < limit))
+    bad = ~((value >= LEAST) & (value < limit))
     if bad.any():
         raise ValueError(f"{name} = {value[bad][0]:.6g}{words}")
     return value[()]

@@ -20,6 +20,7 @@ PENALTY = 1e6  # of the equations; the multipliers make them exact
 POWER = 1.5  # of the vertex count in the weight of smoothness: alike on fine meshes
 STEPS = 30  # at most, of the multipliers and of the gliding boundary
 EXACT = 1e-9  # residuals above this fraction of a diagonal mean: there is no such net
+THIN = 1000  # the diagonals of a face differ by less than this factor
 SLIDE = 0.01  # weight of the distance along the outline, beside 1 for that across it
 
 
@@ -71,7 +72,7 @@ def planar_net(
     rims = _read_outlines(boundary, Q, count)
     start = None if start is None else _points(start, "start", count)
     centre, size = _frame(places, rims, start, smooth)
-    places = (places - centre) / size
+    exact, places = places, (places - centre) / size
     rims = [(loop, (curve - centre) / size) for loop, curve in rims]
     start = None if start is None else (start - centre) / size
     alone = not rims and len(held) > 1
@@ -82,7 +83,7 @@ def planar_net(
     distance = float(size * max(apart, default=np.nan))
     flipped, wound = faults(z, Q)
     z = centre + size * z
-    z[held] = centre + size * places
+    z[held] = exact
     V = np.stack([z.real, z.imag, np.zeros(count)], axis=1)
     words = f"{count - len(Q)} complex freedoms, equations off by {residual:.1g}"
     words += f", boundary off by {distance:.3g}" if rims else ""
@@ -96,6 +97,9 @@ def factor_k(theta: float, theta0: float) -> complex:
     if np.ndim(theta) or np.ndim(theta0):
         raise ValueError("theta and theta0 are one number each")
     lam, _ = parallelogram.ratios(theta, theta0)
+    if not 1 / THIN < lam < THIN:
+        words = f"lam = {lam:.3g}, and only 1/{THIN} to {THIN} can be told from zero here"
+        raise ValueError(f"theta = {theta:.6g}, theta0 = {theta0:.6g}: {words}")
     return complex(lam * np.exp(1j * theta))
 
 

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from . import mesh, ties
 
-FLAT = 1e-12  # of the square of the longest side: an area this small is none
+FLAT = 1e-8  # of the square of the longest side: an area this small is none
 NEAR = 1e-6  # of the bounding box: vertices of a file closer than this are meant to be one
 SAME = 1e-12  # of the bounding box: vertices closer than this are at one place
 
@@ -45,8 +45,9 @@ def clean(V: np.ndarray, F: np.ndarray) -> Clean:
 def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     """Faces F of any sizes as an oriented manifold of triangles: (V, T (t, 3), sentences).
 
-    With `merge`, vertices at one place become one where the surface stays a manifold.
-    ValueError, with vertices of V, for what no step can repair."""
+    With `merge`, vertices at one place become one where the surface stays a manifold and open,
+    and a vertex inside an edge of its neighbour divides it.  ValueError, with vertices of V,
+    for what no step can repair."""
     T = triangulate(V, F)
     F = F.tolist() if isinstance(F, np.ndarray) else F
     first = {
@@ -56,21 +57,29 @@ def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
     said = _counted(first)
     for tolerance in (NEAR, SAME) if merge else ():
         try:
-            V, T, more = _oriented(V, T, tolerance)
-            return V, T, said + more
+            W, G, more = _oriented(V, T, tolerance)
+            if len(W) < len(np.unique(T)) and not mesh.boundary_loops(G) and _in_one_piece(T):
+                raise ValueError("a cut would be closed")
+            return W, G, said + more
         except ValueError as error:
             refused = f"duplicate vertices were not merged: {error}"
     V, T, more = _oriented(V, T)
     return V, T, [*said, refused, *more] if merge else said + more
 
 
+def _in_one_piece(F):
+    used, corner = np.unique(F, return_inverse=True)
+    return not components(len(used), *mesh.half_edges(corner.reshape(F.shape))).any()
+
+
 def _oriented(V, T, tolerance=None):
     """(V, T, sentences): an oriented manifold, merged where there is a tolerance."""
     T, dropped = drop(T)
-    merged = more = 0
+    merged = more = divided = 0
     if tolerance is not None:
         T, merged = merge(V, T, tolerance)
         T, more = drop(T)
+        T, divided = divide(V, T, tolerance)
     if more and tolerance == NEAR:
         raise ValueError("the tolerance is too large for this mesh")
     T, turned = orient(T)
@@ -80,6 +89,7 @@ def _oriented(V, T, tolerance=None):
     done = {
         "duplicate vertices merged": merged,
         "collapsed or double triangles dropped": dropped + more,
+        "vertices inside an edge of a neighbour (T-junctions) joined to it": divided,
         "triangles turned round, so that all are oriented alike": turned,
         "vertices of no face left out": len(V) - merged - len(used),
     }
@@ -114,6 +124,37 @@ def drop(T: np.ndarray) -> tuple:
     return T[kept], len(T) - len(kept)
 
 
+def divide(V: np.ndarray, T: np.ndarray, tolerance: float) -> tuple:
+    """(triangles whose free edges end at all vertices of free edges on them, how many these are).
+
+    tolerance: how close such a vertex is to the edge, as a part of the bounding box.
+    """
+    start, end = mesh.half_edges(T)
+    edges = np.sort([start, end], axis=0)
+    _, first, often = np.unique(edges, axis=1, return_index=True, return_counts=True)
+    free = first[often == 1]
+    points, count = np.unique(edges[:, free]), 0
+    radius = tolerance * np.linalg.norm(np.ptp(V[np.unique(T)], axis=0))
+    a, way = V[start[free]], V[end[free]] - V[start[free]]
+    long = np.linalg.norm(way, axis=1)
+    near = cKDTree(V[points]).query_ball_point(a + way / 2, long / 2) if len(free) else []
+    inserted = {}
+    for k, found in enumerate(near):
+        found = points[found]
+        along = (V[found] - a[k]) @ way[k] / long[k]
+        off = np.linalg.norm(V[found] - a[k] - along[:, None] * way[k] / long[k], axis=1)
+        on = (off <= radius) & (along > radius) & (along < long[k] - radius)
+        if on.any():
+            inserted[free[k]] = found[on][np.argsort(along[on])]
+            count += on.sum()
+    new, gone = [], sorted({half // 3 for half in inserted})
+    for face in gone:
+        corners = [[T[face, k], *inserted.get(3 * face + k, [])] for k in range(3)]
+        polygon = np.concatenate(corners)
+        new.append(polygon[_ears(V[polygon])])
+    return np.concatenate([np.delete(T, gone, axis=0), *new]), int(count)
+
+
 def orient(T: np.ndarray) -> tuple:
     """(triangles oriented alike, how many were turned): the more frequent side of a piece wins.
 
@@ -136,7 +177,7 @@ def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
     flat = ~(area > FLAT * np.sum(sides**2, axis=2).max(axis=1))
     if flat.any():
         corners = T[np.argmax(flat)].tolist()
-        raise ValueError(f"the triangle {corners} near {_place(V[corners[0]])} has no area")
+        raise ValueError(f"the triangle {corners} near {place(V[corners[0]])} has no area")
     return normal / area[:, None]
 
 
@@ -145,7 +186,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
     if pinched.size:
-        k, near = pinched[0], _place(V[pinched[0]])
+        k, near = pinched[0], place(V[pinched[0]])
         raise ValueError(f"the faces at vertex {k}, near {near}, form two fans: not a manifold")
 
 
@@ -191,7 +232,8 @@ def components(count: int, one: np.ndarray, two: np.ndarray) -> np.ndarray:
     return connected_components(graph, directed=False)[1]
 
 
-def _place(point):
+def place(point: np.ndarray) -> str:
+    """A point in words."""
     return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
 
 
@@ -202,13 +244,40 @@ def weld(V: np.ndarray, F: np.ndarray) -> tuple:
     return V[F.ravel()[first[order]]], np.argsort(order)[place.ravel()].reshape(F.shape)
 
 
+def without_repeats(F: Sequence) -> list:
+    """The faces as lists, without corners that repeat the one before."""
+    return [[k for k, one in zip(f, [f[-1], *f[:-1]], strict=True) if k != one] for f in F]
+
+
+def welded(V: np.ndarray, Q: np.ndarray, polygons: Sequence = ()) -> tuple:
+    """A net with one vertex at each place: (V, Q, polygons, sentences), as it was if nothing is.
+
+    Duplicates stay where the quads would be no manifold, or a cut would be closed."""
+    corners = np.concatenate([Q.ravel(), *polygons])
+    joined, count = merge(V, corners, NEAR)
+    new = joined[: Q.size].reshape(Q.shape)
+    try:
+        mesh.check_quads(new)
+        closed = 2 * len(mesh.pairs(new)) == Q.size
+        if closed and _in_one_piece(Q):
+            raise ValueError("a cut would be closed")
+    except ValueError as error:
+        return V, Q, polygons, [f"duplicate vertices were not merged: {error}"]
+    if not count:
+        return V, Q, polygons, []
+    used, joined = np.unique(joined, return_inverse=True)
+    parts = np.split(joined, np.cumsum([Q.size, *map(len, polygons)])[:-1])
+    said = _counted({"duplicate vertices merged": count})
+    return V[used], parts[0].reshape(Q.shape), parts[1:], said
+
+
 def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
     """Triangles (t, 3) of faces F of any sizes, in their order, without corners said twice.
 
     Quads are cut along the shorter diagonal, polygons ear by ear: ValueError where none is left."""
     if isinstance(F, np.ndarray) and F.shape[1] in (3, 4) and np.diff(np.sort(F)).all():
         return mesh.triangles(V, F)[1]
-    faces = [[k for k, one in zip(f, [f[-1], *f[:-1]], strict=True) if k != one] for f in F]
+    faces = without_repeats(F)
     sizes = np.array(list(map(len, faces)))
     parts, owner = [np.empty((0, 3), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
     for size in np.unique(sizes[sizes >= 3]):
@@ -234,9 +303,12 @@ def _ears(P):
         sides = P[np.roll(ears, -1, axis=1)] - P[ears]
         turned = np.cross(sides[:, 0], sides[:, 1]) @ normal > little
         inside = np.cross(sides[:, :, None], P[left] - P[ears][:, :, None]) @ normal >= -little
-        good = np.flatnonzero(turned & (inside.all(axis=1).sum(axis=1) == 3))  # its own corners
+        own = (
+            (P[left] == P[ears][:, :, None]).all(axis=3).any(axis=1)
+        )  # corners, or bridges to them
+        good = np.flatnonzero(turned & ~(inside.all(axis=1) & ~own).any(axis=1))
         if not good.size:
-            raise ValueError(f"the face at {_place(P[0])} has no area, or sides that cross")
+            raise ValueError(f"the face at {place(P[0])} has no area, or sides that cross")
         cuts = np.linalg.norm(P[ears[good, 2]] - P[ears[good, 0]], axis=1)
         k = good[ties.first_smallest(cuts)]
         found.append(ears[k])

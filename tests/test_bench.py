@@ -20,8 +20,8 @@ def test_the_smallest_case_fills_all_columns(capsys):
     assert names.split() == " ".join(name for name, _ in BENCH.COLUMNS).split()
     for setting, text in zip("EB", lines, strict=True):
         assert text.startswith(f"     400    {setting}  ratio, splu ")
-        steps, shape, angle, whole, peak, off, flips, *faster = text.split()[4:]
-        assert int(steps) <= 12 and float(off) < 1e-9 and flips == "0"
+        steps, shape, angle, whole, peak, off, flips, darts, *faster = text.split()[4:]
+        assert int(steps) <= 12 and float(off) < 1e-9 and flips == darts == "0"
         assert min(float(x) for x in (shape, angle, whole)) > 0
         assert peak == "n/a" or float(peak) > 10
         assert faster == ["-", "-", "-"]

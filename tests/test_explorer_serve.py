@@ -377,7 +377,7 @@ async def test_a_given_net_is_shown_and_never_changed(serve, run):
         assert not app.state.can_search and list(app.state.families) == ["d1", "d2"]
 
 
-BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".stl")] + [
+BAD_SAVES = [(s, SIDE) for s in ("", ".exe", "../x.obj", None, ["a"], ".step")] + [
     (".svg", camera)
     for camera in (None, {}, [], "up", {"position": [1, 2, 3]}, SIDE | {"position": [1, 2]})
 ]

@@ -49,7 +49,9 @@ def test_freedom_finds_the_nearest_point_of_the_goal_inside_the_range_of_eq_4():
     assert freedom(aim(1.0, 1.0), (0.1, 0.3)).size == 0
     np.testing.assert_allclose(freedom(aim(equal=True), (0.1, 0.3)), [0.2])
     np.testing.assert_allclose(freedom(aim(theta=1.0), (0.1, 0.3)), [0.1])
+    np.testing.assert_allclose(freedom(aim(theta0=1.0), (0.1, 0.3)), [0.3])
     np.testing.assert_allclose(freedom(aim(lam=2.0), (0.1, 0.3)), [0.3])
+    np.testing.assert_allclose(freedom(aim(mu=2.0), (0.1, 0.3)), [0.1])
     np.testing.assert_allclose(freedom(aim(), (0.1, 0.3)), [0.1, 0.3])
     for goal in (aim(), aim(equal=True), aim(lam=3.0), aim(mu=0.3)):
         for near in ((2.0, 1.5), (-3.0, 2.0), (0.5, -4.0)):

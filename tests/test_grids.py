@@ -1,5 +1,6 @@
 """Large grids: the blocks against the sparse matrices, the nets against the judge."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -93,6 +94,8 @@ def test_levels_double_and_end_at_the_grid_and_splines_keep_cubics():
             for one, two in zip(small, large, strict=True):
                 assert two == one or two in (2 * one, 2 * one - 1)
     assert grids.levels(25, 30) == [(25, 30)]
+    assert grids.levels(30, 30) == [(30, 30)]
+    assert grids.levels(31, 32) == [(16, 16), (31, 32)]
     assert grids.levels(25, 30, coarse=10) == [(13, 15), (25, 30)]
     u, v = np.meshgrid(np.linspace(0, 1, 6), np.linspace(0, 1, 9), indexing="ij")
     fine_u, fine_v = np.meshgrid(np.linspace(0, 1, 12), np.linspace(0, 1, 17), indexing="ij")
@@ -102,6 +105,9 @@ def test_levels_double_and_end_at_the_grid_and_splines_keep_cubics():
 
     fine = grids.refine(cubic(u, v), 11, 16)
     np.testing.assert_allclose(fine, cubic(fine_u, fine_v), atol=1e-12)
+    few = np.mgrid[:1:3j, :1:3j]  # three points a side fix a parabola
+    parabolas = [np.stack([x**2, x * y, y**2]) for x, y in (few, np.mgrid[:1:6j, :1:8j])]
+    np.testing.assert_allclose(grids.refine(parabolas[0], 5, 7), parabolas[1], atol=1e-12)
 
 
 @pytest.mark.parametrize(("theta", "theta0"), ANGLES)
@@ -114,6 +120,8 @@ def test_all_faces_have_the_wanted_angles(theta, theta0, m, n, stretch):
     assert np.degrees(measure.deviations(result.V, Q, theta, theta0).max()) < 1e-7
     assert measure.quality(result.V, Q).flips == 0
     assert f"{m} x {n} quads" in result.message
+    _, *between, last = map(int, re.findall(r"in (\d+) steps", result.message))
+    assert all(steps <= 2 for steps in between) and last <= 4  # none where it is good enough
     assert (result.lam, result.mu) == pytest.approx(parallelogram.ratios(theta, theta0))
 
 
@@ -153,6 +161,7 @@ def test_a_refinement_that_leads_nowhere_is_tried_again_and_reported(monkeypatch
     result = grids.optimize(freeform(130, 120), 1.0, 1.2, coarse=12)
     assert not result.converged and "astray" in result.message
     assert "33 x 30 quads" in result.message  # the finer of the two coarse grids
+    assert "17 x 15 quads" not in result.message
     off = measure.deviations(result.V, mesh.grid_quads(130, 120), 1.0, 1.2).max()
     assert 1e-6 < off < 0.1  # the splines through the coarse net, no worse
 

@@ -323,7 +323,7 @@ def test_closings_fulfil_the_closing_condition_find_a_closed_web_again_and_tie_b
     assert np.all(np.diff(off) > -1e-9) and off[0] < 0.3 * DEG and found[0][:3] == (16, 13, 4)
     theta, theta0 = parallelogram.from_rho((12 + 48j * 0.8 / np.sqrt(2**2 - 0.8**2)) / 24)[2:]
     best = loxodrome.closings(2, 0.8, theta, theta0, limit=48)[0]
-    assert (best.m, best.n) in {(4, 2), (8, 4), (12, 6)}
+    assert best[:3] == (8, 4, 2)  # two rows (4, 2, 1) would be no net
     assert (best.theta, best.theta0) == pytest.approx((theta, theta0))
     for pair in np.radians([(90, 60), (60, 90), (90, 90)]):
         known = loxodrome.closings(np.sqrt(2), 1, *pair)
@@ -365,6 +365,16 @@ WRONG = [
 def test_bad_arguments_are_named(function, arguments, words):
     with pytest.raises(ValueError, match=words):
         function(*arguments)
+
+
+def test_too_many_rows_are_counted_in_closed_form_on_a_cylinder():
+    """theta = 90, theta0 = 30 degrees: mu = 1, rows of the height 2 pi / m sin theta0."""
+    for height in (1e4, 1e6):
+        high = Profile(lambda t: 1 + 0 * t, lambda t: t, 0, height)
+        rows = height * 12 / (2 * np.pi * 0.5)
+        with pytest.raises(ValueError, match=f"about {rows:.0f} rows of 12 quads fit"):
+            loxodrome.web(high, np.pi / 2, np.pi / 6, 12)
+    assert loxodrome.web(high, np.pi / 2, np.pi / 6, 12, n=3).rows == 3
 
 
 @pytest.mark.parametrize("method", [(), ("smooth",), ("paper", "mu")])

@@ -269,7 +269,8 @@ def test_planarity_area_ratio_and_aspect_by_hand():
     assert measure.quality(5 * V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
     found = measure.quality(*sheared(3, 2, v=(0, 1, 0)))
     assert (found.flips, found.flipped.tolist()) == (0, [])
-    assert found[2:] == pytest.approx((1, 1, 0))
+    assert (found.darts, found.nonconvex.tolist()) == (0, [])
+    assert found[4:] == pytest.approx((np.pi / 2, 1, 1, 0))
     x = np.array([0, 1, 3, 7])  # cells 1 x 1, 2 x 1, 4 x 1
     V = np.array([[a, b, 0.0] for a in x for b in (0, 1)])
     found = measure.quality(V, mesh.grid_quads(3, 1))
@@ -277,8 +278,43 @@ def test_planarity_area_ratio_and_aspect_by_hand():
     assert found.aspect == pytest.approx(4)
     tall = measure.quality(V[:, [1, 0, 2]] * [-1, 1, 1], mesh.grid_quads(3, 1))
     assert tall.aspect == pytest.approx(4)
+    assert measure.quality(3 * V, mesh.grid_quads(3, 1)).aspect == pytest.approx(4)
     with pytest.raises(ValueError, match="face 0 has no area: its diagonals are parallel"):
         measure.quality(*quad((0, 0), (1, 1), (1, 0), (3, 1)))
+
+
+@pytest.mark.parametrize("beyond", [-0.1, 0.1])
+def test_darts_are_faces_whose_diagonals_meet_beyond_an_end(beyond):
+    x = 1 + beyond  # the second diagonal crosses the line of the first one there
+    dart = quad((0, 0), (x, -1), (1, 0), (x, 3))
+    folded = quad((x, 3), (0, 0), (x, -1), (1, 0))  # the same with the diagonals exchanged
+    for V, Q in (dart, folded, (7 * dart[0] + 100, ONE)):
+        found = measure.quality(V, Q)
+        assert found.nonconvex.tolist() == [0][: found.darts]
+        assert found.darts == (beyond > 0)
+
+
+def test_corners_by_hand():
+    V, Q = quad((0, 1), (0, 0), (2, 0), (1, 1))  # and a square in space
+    V = np.concatenate([V, [[0, 0, 5], [3, 0, 5], [3, 0, 8], [0, 0, 8]]])
+    right, half = np.pi / 2, np.pi / 4
+    wanted = [[right, right, half, 3 * half], [right] * 4]
+    np.testing.assert_allclose(measure.corners(V, np.concatenate([Q, Q + 4])), wanted, rtol=1e-14)
+    assert measure.quality(V, np.concatenate([Q, Q + 4])).corner == pytest.approx(half)
+
+
+@given(seeds)
+def test_star_angles_of_a_star_in_space_by_arccos(seed):
+    V = np.random.default_rng(seed).normal(size=(9, 3)) + sheared(2, 2)[0]
+    chords = np.array([[7, 1], [5, 3], [6, 2], [8, 0]])  # right left, up down, the ends of d1, d2
+    for unit in (False, True):
+        rays = V[chords] - V[4]
+        rays /= np.linalg.norm(rays, axis=2, keepdims=True) if unit else 1
+        right, up, d1, d2 = rays[:, 0] - rays[:, 1]
+        star = measure.star_angles(V, mesh.grid_quads(2, 2), unit)
+        wanted = [a @ b / np.sqrt((a @ a) * (b @ b)) for a, b in ((d1, d2), (right, up))]
+        assert star.vertex.tolist() == [4]
+        np.testing.assert_allclose(np.cos([star.theta[0], star.theta0[0]]), wanted, atol=1e-12)
 
 
 def test_parallel_plane_pieces_are_as_far_apart_as_they_are():

@@ -431,6 +431,20 @@ def test_singular_vertices_get_polygons_and_closed_surfaces_one_white_face_a_ver
         mesh.checkerboard(V, two_cubes())
 
 
+@pytest.mark.parametrize("both", [False, True])
+def test_triples_are_the_neighbours_along_the_lines_of_a_closed_grid(both):
+    m, n = 5, 4
+    wide = n if both else n + 1
+    wanted = set()
+    for i, j in np.ndindex(m, wide):
+        lines = [((i - 1) % m, j, (i + 1) % m, j)]  # along u, and along v where it goes on
+        lines += [(i, (j - 1) % wide, i, (j + 1) % wide)] if both or 0 < j < n else []
+        wanted |= {(frozenset([a * wide + b, c * wide + d]), i * wide + j) for a, b, c, d in lines}
+    found = mesh.triples(rolled(m, n, both))
+    assert len(found) == len(wanted)
+    assert {(frozenset([a, c]), b) for a, b, c in found.tolist()} == wanted
+
+
 def test_edges_of_diagonal_meshes_are_face_diagonals_and_need_labels_and_a_colouring():
     for Q in (slow_grid(5, 4), rolled(6, 3), rolled(4, 6, both=True)):
         for found in mesh.diagonal_meshes(Q):

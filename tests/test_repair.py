@@ -96,6 +96,12 @@ def test_a_square_with_a_square_hole_loses_no_triangle_and_fans_are_those_of_lib
             assert f"vertex {pinched[0]}," in str(error)
 
 
+def test_of_two_pinched_vertices_the_first_is_named_with_its_place():
+    T = np.array([[0, 1, 2], [0, 3, 4], [5, 6, 7], [5, 8, 9]])
+    with pytest.raises(ValueError, match=r"vertex 0, near \(0, 1, 2\)"):
+        repair.require_single_fans(np.arange(30).reshape(10, 3), T, mesh.opposites(T))
+
+
 def holes(*places):
     V, F = plate(9)
     middle = V[F].mean(axis=1)[:, :2]
@@ -166,6 +172,7 @@ def test_a_broken_surface_is_mended_and_says_so():
     assert [int(words.split(": ")[1]) for words in said] == [8, 1, 16, 3, 2, 1]
     with pytest.raises(ValueError, match="no face has three different corners"):
         repair.manifold(V, [[0, 1, 1]])
+    assert repair.manifold(W, T)[2] == []  # closed, and nothing to mend
 
 
 def test_merging_never_makes_a_surface_worse():

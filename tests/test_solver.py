@@ -1,5 +1,6 @@
 """Optimised nets, judged by `measure` alone; symmetries of the solver; what it refuses."""
 
+from itertools import pairwise
 from unittest.mock import Mock
 
 import numpy as np
@@ -29,7 +30,10 @@ def test_every_face_has_the_two_given_angles_and_keeps_them(degrees, residual):
     angles = np.radians(degrees)
     found = solver.optimize(V, Q, *angles, residual=residual)
     assert found.converged and judge(found, Q, *angles)
+    off = np.log(measure.ratios(V, Q)) - np.log(parallelogram.ratios(*angles))[:, None]
+    assert found.history[0].residual == pytest.approx(np.sum(off**2))
     assert len(found.history) - 1 <= 12
+    assert all(step.deviation > 1e-11 for step in found.history[:-1])  # the tolerance: no idle step
     np.testing.assert_allclose((found.lam, found.mu), parallelogram.ratios(*angles))
     np.testing.assert_array_equal(V, patch()[0])  # the input is untouched
     again = solver.optimize(found.V, Q, *angles, residual=residual, shape_steps=0)
@@ -68,16 +72,77 @@ def test_an_angle_step_is_the_smallest_change_that_meets_the_linear_equations():
         np.testing.assert_allclose(d.ravel(), least, atol=1e-10)
 
 
-def test_a_shape_step_minimises_the_linearised_energy():
+@pytest.mark.parametrize("on_surface", [False, True])
+def test_an_angle_step_with_slow_and_fixed_vertices_on_a_sphere_and_off_it(on_surface):
+    V, Q = patch(3)
+    V[:, 2] += 2
+    foot = V / np.linalg.norm(V, axis=1, keepdims=True)  # of the unit sphere, and its normal
+    V = foot * np.linspace(0.97, 1.04, len(V))[:, None]
+    slow = np.linspace(0, 2, len(V))  # the first one is fixed
+    sphere = Mock(diagonal=3.0, closest=lambda V: (foot, foot))
+    goal = aim(1.4, 1.3)
+    given = problem.prepare(V, Q, goal, reference=sphere, on_surface=on_surface, mobility=slow)
+    d, _ = run.angle_step(given, V, goal, np.zeros(0))
+    residual, J, _ = run.equations(given, V, goal, np.zeros(0))
+    lift = (foot - V) * (slow > 0)[:, None] if on_surface else 0 * V
+    # by LAPACK, in two tangents a vertex, or in x, y, z, divided by the root of the mobility
+    frames = np.linalg.svd(foot[:, None, :])[2][:, 1 if on_surface else 0 :]
+    frames = frames * np.sqrt(slow)[:, None, None]
+    columns = np.einsum("fnx,nkx->fnk", J.toarray().reshape(-1, *V.shape), frames)
+    wanted = -residual - J @ lift.ravel()
+    y = np.linalg.lstsq(columns.reshape(len(wanted), -1), wanted, rcond=None)[0]
+    y = y.reshape(len(V), -1)
+    np.testing.assert_allclose(d, lift + np.einsum("nk,nkx->nx", y, frames), atol=1e-8)
+
+
+@pytest.mark.parametrize("weights", [(1e-2, 1.0), (1e-1, 0.0)])
+def test_a_coupled_step_is_the_least_squares_solution_of_its_energies(weights):
+    V, Q = patch(3)
+    surface, slow = reference.mesh(*patch(9)), np.linspace(0.5, 2, len(V))
+    goal = aim(theta=1.4)
+    given = problem.prepare(V, Q, goal, reference=surface, mobility=slow)
+    V = V + 0.03 * np.random.default_rng(3).normal(size=V.shape)
+    s = np.array([0.1])
+    d, ds = run.coupled_step(given, V, goal, s, weights)
+    residual, J, slopes = run.equations(given, V, goal, s)
+    (a, b, c, e), loose = np.moveaxis(V[Q], 1, 0), np.sqrt(weights[0])
+    long = (np.linalg.norm(c - a, axis=1) + np.linalg.norm(e - b, axis=1)) / 2
+    reach = [np.mean([long[k] for k in range(len(Q)) if v in Q[k]]) for v in range(len(V))]
+    feet, normals = surface.closest(V)
+    rows, right = [np.hstack([J.toarray(), -slopes])], [-residual]
+    for k, face in enumerate(Q):  # the shift of every other corner
+        rows.append(np.zeros((3, V.size + 1)))
+        for sign, v in zip((1, -1, 1, -1), face, strict=True):
+            rows[-1][:, 3 * v : 3 * v + 3] = sign * loose * np.sqrt(run.COUPLING) / 2 / long[k]
+            rows[-1][:, 3 * v : 3 * v + 3] *= np.eye(3)
+        right.append(np.zeros(3))
+    for v in range(len(V)):
+        rows.append(np.zeros((4, V.size + 1)))
+        rows[-1][:3, 3 * v : 3 * v + 3] = loose * np.eye(3) / reach[v] / np.sqrt(slow[v])
+        rows[-1][3, 3 * v : 3 * v + 3] = np.sqrt(weights[1]) * normals[v] / reach[v]
+        apart = (V[v] - feet[v]) @ normals[v]
+        right.append([0, 0, 0, -np.sqrt(weights[1]) * apart / reach[v]])
+    best = np.linalg.lstsq(np.concatenate(rows), np.concatenate(right), rcond=None)[0]
+    if weights[1]:
+        np.testing.assert_allclose(np.append(d, ds), best, atol=1e-9)
+    else:  # with a second step on what the size has left over of the equations
+        left = residual + J @ best[:-1] - slopes @ best[-1:]
+        right = np.concatenate([-left, np.zeros(len(np.concatenate(right)) - len(left))])
+        best += np.linalg.lstsq(np.concatenate(rows), right, rcond=None)[0]
+        np.testing.assert_allclose(np.append(d, ds), best, atol=1e-9)
+
+
+@pytest.mark.parametrize("slow", [np.ones(25), np.linspace(0.5, 2, 25)])
+def test_a_shape_step_minimises_the_linearised_energy(slow):
     V, Q = patch(4)
     surface = reference.mesh(*patch(9))
     goal = aim(theta=1.4)
-    given = problem.prepare(V, Q, goal, reference=surface)
+    given = problem.prepare(V, Q, goal, reference=surface, mobility=slow)
     s = np.array([0.1])
     d, ds = run.shape_step(given, V, goal, s)
     residual, J, slopes = run.equations(given, V, goal, s)
     A, g = problem.shape(given, V)
-    close = np.repeat(given.weights.closeness, 3)
+    close = np.repeat(given.weights.closeness / slow, 3)
 
     def energy(x):
         d, ds = x[: V.size], x[V.size :]
@@ -89,6 +154,7 @@ def test_a_shape_step_minimises_the_linearised_energy():
     for _ in range(20):
         aside = 1e-3 * rng.normal(size=best.size)
         assert energy(best + aside) > energy(best)
+        assert abs(energy(best + aside) - energy(best - aside)) < 1e-12
 
 
 def test_shape_energies_are_those_of_the_paper():
@@ -191,6 +257,17 @@ def test_the_hexagon_mesh_goes_to_60_and_45_degrees_step_by_step():
     assert np.abs(np.diff(way[:, 1])).max() <= solver.STRIDE + 1e-12
 
 
+def test_a_reference_may_be_a_tenth_of_its_diagonal_away():
+    x, y = np.mgrid[:1:5j, :1:5j]
+    low, near, far = (
+        np.stack([x, y, z + 0 * x], axis=-1).reshape(-1, 3)
+        for z in np.multiply(2**0.5, [0, 0.08, 0.12])
+    )
+    problem.prepare(near, QUADS, aim(), reference=reference.mesh(low, QUADS))
+    with pytest.raises(ValueError, match=r"far away, 0\.12 of its diagonal"):
+        problem.prepare(far, QUADS, aim(), reference=reference.mesh(low, QUADS))
+
+
 def test_random_patches_converge_or_say_that_they_did_not():
     rng = np.random.default_rng(7)
     good = 0
@@ -225,6 +302,8 @@ def test_extreme_angles_never_give_nan_and_far_nets_are_as_exact_as_their_coordi
         found = solver.optimize(V, Q, *np.radians(degrees))
         assert np.isfinite(found.V).all()
         assert found.converged == judge(found, Q, *np.radians(degrees))
+    one, large = (problem.prepare(k * V, Q, aim()).rounding for k in (1, 2**20))
+    assert one == large  # an angle: it has no scale
     found = solver.optimize(V + 1e6, Q, SIXTY, SIXTY)
     off = max(np.abs(a - SIXTY).max() for a in measure.angles(found.V, Q))
     assert found.converged and 1e-11 < off < 1e-7
@@ -245,6 +324,10 @@ def test_a_caller_can_watch_stop_and_limit_and_sees_a_bar_on_request(capsys):
     stopped = solver.optimize(V, Q, SIXTY, SIXTY, callback=watch)
     assert watch.call_count == len(stopped.history) - 1 == 3
     assert "stopped by the caller" in stopped.message
+    assert all(0 < seconds < 60 for seconds in stopped.seconds.values())
+    nets = [V, *(call.args[1] for call in watch.call_args_list)]
+    ways = [np.linalg.norm(b - a, axis=1).max() for a, b in pairwise(nets)]
+    assert [step.size for step in stopped.history] == pytest.approx([0, *ways])
     limited = solver.optimize(V, Q, SIXTY, SIXTY, iterations=2)
     assert len(limited.history) == 3 and not limited.converged
     for found in (stopped, limited):

@@ -56,6 +56,8 @@ def test_darboux_translational_rotational_and_helical_surfaces_by_hand():
     x, y, z = generatrix(U)
     turned = (x * c - y * s, x * s + y * c)
     assert same(surfaces.rotational(generatrix).coordinates(U, V), (*turned, z))
+    moved = surfaces.translation(generatrix, lambda v: (v, v**2, 3 * v))
+    assert same(moved.coordinates(U, V), (x + V, y + V**2, z + 3 * V))
     assert same(surfaces.helical(generatrix, P).coordinates(U, V), (*turned, z + P * V))
 
 
@@ -298,3 +300,15 @@ def test_the_freeform_patch_is_a_dome_and_a_saddle_in_a_unit_box_at_any_resoluti
     uu, uv, vv = (np.sum(x * np.cross(u, v), axis=-1)[3:-3, 3:-3] for x in second)
     assert np.mean(uu * vv - uv**2 > 0) > 0.2  # the dome
     assert np.mean(uu * vv - uv**2 < 0) > 0.2  # the saddle
+
+
+@pytest.mark.parametrize("start", [-3.0, 0.0, 2.0])
+def test_slopes_are_found_inside_the_profile_only(start):
+    def inside(t, value):
+        return np.where((start <= t) & (t <= start + 1), value, np.nan)
+
+    profile = Profile(
+        lambda t: inside(t, 9 + t**3), lambda t: inside(t, np.sin(t)), start, start + 1
+    )
+    t = np.linspace(start, start + 1, 41)
+    np.testing.assert_allclose(surfaces.slope(profile, t), (3 * t**2, np.cos(t)), atol=1e-8)

@@ -6,24 +6,24 @@ the optimisation that follows moves the vertices only a little along the surface
 from collections.abc import Callable
 from typing import NamedTuple
 
+import igl
 import numpy as np
 
 from .. import parallelogram, reference, repair, solver
-from ..solver.problem import Weights
 from ..solver.run import timed
 from . import flatten, overlay
 from .report import Report, area_of, survey
 
-NEAR = Weights(fairness=0.02, closeness=0.001, approximation=10.0, boundary=0.0)
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
-ATTEMPTS = (  # the first good one is taken: on the surface, near it, reshaped near it
-    POLISH | {"on_surface": True},
-    POLISH | {"on_surface": True, "shape_steps": 2},
-    POLISH,
-    {"shape_steps": 4, "weights": NEAR},
+ON = POLISH | {"on_surface": True}
+ATTEMPTS = (  # the first good one is taken: on the surface, or near it
+    ON,
+    ON | {"shape_steps": 2},
+    {"shape_steps": 8, "via": "jump", "coupled": True},
 )
+COARSE = 1000  # triangles: a surface with fewer is divided before it is flattened
 FINE = 1e-3  # radians: a net on the surface that is this close is finished in space
-GROWN = 1.2  # of the area: a net that grows or shrinks more has folded or collapsed
+GROWN = 1.5  # of the area: a net that grows or shrinks more has folded or collapsed
 AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcome
 
 
@@ -84,9 +84,13 @@ def cover(
         surface = repair.clean(V, F)
         goal = reference.mesh(surface.V, surface.F)
     with timed(seconds, "flatten"):
-        flat = flatten.flatten(surface.V, surface.F, surface.loops, boundary)
+        W, T, loops = surface[:3]
+        while len(T) < COARSE:  # the map is linear on each triangle
+            W, T = igl.upsample(W, T)
+            loops = repair.topology(T)
+        flat = flatten.flatten(W, T, loops, boundary)
     with timed(seconds, "grid"):
-        domain = overlay.Domain(flat, surface.V)
+        domain = overlay.Domain(flat, W)
         layer = overlay.cover(domain, theta, theta0, count, size, direction)
     net, done, words = layer.V, False, "not optimised"
     if optimise:
@@ -96,7 +100,9 @@ def cover(
         found = survey(net, layer.Q, theta, theta0, goal, flat)
     if done and found.distance_max > AWAY:
         words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
-        words += ": ask for more quads"
+        triangles = np.linalg.norm(surface.V[surface.F[:, 1]] - surface.V[surface.F[:, 0]], axis=1)
+        coarse = triangles.mean() > found.edge_mean
+        words += ": its triangles are coarser" if coarse else ": ask for more quads"
     found = found._replace(converged=done, message=words, winding=layer.winding)
     return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
 
@@ -139,5 +145,5 @@ def _faults(result, Q, area, goal):
 
 
 def _deviation(result):
-    """The largest deviation of an angle in the net returned, infinite if faces are flipped."""
-    return min((step.deviation for step in result.history if not step.flips), default=np.inf)
+    """The largest deviation of an angle in the net returned, infinite if faces are faulty."""
+    return min((step.deviation for step in result.history if not step.key[0]), default=np.inf)

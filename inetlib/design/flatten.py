@@ -1,23 +1,22 @@
 """Conformal maps of disks and rings of triangles to the plane, as complex numbers.
 
 Plain: the spectral relative of LSCM for disks; a ring becomes a strip between parallel lines,
-its banks a period apart.  Even: a constant scale along the boundary, the least varying of all."""
+its banks a period apart.  Even: a constant scale along the boundary, the least varying of all.
+The maps of disks start from one without branch points, whose boundary turns just once.
+"""
 
 from typing import NamedTuple
 
 import igl
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csr_array, diags_array, eye_array
+from scipy.sparse import block_array, coo_array, csr_array, eye_array
 from scipy.sparse.csgraph import dijkstra
 
 from .. import mesh, repair, ties
 from ..solver import sparse
 
-ROUNDS = 100  # of the inverse iteration, at most; five are usual
+ROUNDS = 8  # of the inverse iteration, at most: many could end at a branched map, like z^2
 STILL = 1e-9  # a change of the map, of its size, that ends the iteration
-BEND = 0.1  # weight of an even boundary, against the conformal energy
-BENDS = 60  # steps towards it, at most
-STRAIGHT = 1e-4  # a change of the map, of its size, that ends them
 SAMPLES = 20000  # triangles that are looked at for overlaps
 OVERLAP = 1e-3  # the part of them that may
 ROUND = 1e-3  # a surface without a longest direction: its moment, of its size, is less
@@ -39,26 +38,90 @@ def flatten(V: np.ndarray, F: np.ndarray, loops: list, boundary: str = "even") -
     """The surface V (n, 3), F (f, 3), loops from `repair.clean` as a `Flat`.
 
     The real axis is the longest direction of a disk, and runs around the hole of a ring.
-    boundary: "even" or "plain"; where the even map would overlap itself or flip triangles,
-    the plain one is taken.  ValueError if that overlaps itself, too."""
+    boundary: "even" or "plain"; where that map would overlap itself or flip triangles, the
+    other one is tried.  ValueError if both overlap themselves.
+    """
     if boundary not in ("even", "plain"):
         raise ValueError(f'boundary = "{boundary}": "even" or "plain" is wanted')
     disk = len(loops) == 1
-    faces, origin, bank = (F, np.arange(len(V)), None) if disk else _cut(F, _path(V, F, loops))
-    ends = _ends(V, loops[0]) if disk else np.flatnonzero(bank)[:2]  # any: energy is all we want
-    uv, energy = igl.lscm(V[origin], faces, np.array(ends), np.array([[0.0, 0.0], [1.0, 0.0]]))
-    z, energy, period = uv[:, 0] + 1j * uv[:, 1], csr_array(energy), None if disk else 1.0 + 0j
-    z = _disk(z, energy, loops[0]) if disk else _ring(energy, loops, origin, bank, len(V))
-    flat = _judged(V, F, z, faces, origin, period, ends)
-    if boundary == "even":
-        even = _even(V, F, loops, flat, energy)
-        even = _judged(V, F, even, faces, origin, flat.period, ends)
-        if even.flips <= flat.flips and _overlap(even) < OVERLAP:
-            return even
-    if (part := _overlap(flat)) > OVERLAP:
-        part = f"{100 * part:.2g} %"
+    path = None if disk else _path(V, F, loops)
+    faces, origin, bank = (F, np.arange(len(V)), np.zeros(len(V))) if disk else _cut(F, path)
+    energy = _energy(V[origin], faces)
+    even = _unrolled(V, F, loops, path, origin, bank, energy)
+    known = V, F, faces, origin, None if disk else 1.0 + 0j, _ends(V, loops[0])
+    found = []
+    for kind in ("even", "plain") if boundary == "even" else ("plain", "even"):
+        if kind == "even":
+            z = even
+        elif disk:
+            z = _disk(even, V, energy, loops[0])
+        else:
+            z = _ring(energy, loops, origin, bank, len(V))
+        flat = _judged(z, *known)
+        found.append((_overlap(flat), flat.flips, flat))
+        if found[-1][0] < OVERLAP and not flat.flips:
+            return flat
+    overlap, _, flat = min(found, key=lambda one: (one[0] >= OVERLAP, one[1]))
+    if overlap >= OVERLAP:
+        part = f"{100 * overlap:.2g} %"
         raise ValueError(f"the flattened surface overlaps itself, {part} of it: cut it into pieces")
     return flat
+
+
+def _energy(V, F):
+    """The conformal energy as a Hermitian matrix H: z^H H z / 2, of Dirichlet less the area."""
+    start, end = (ends[mesh.opposites(F) < 0] for ends in mesh.half_edges(F))
+    area = coo_array((np.full(len(start), 0.5j), (start, end)), shape=(len(V),) * 2).tocsr()
+    return csr_array(area + area.T.conj() - igl.cotmatrix(V, F))
+
+
+def _unrolled(V, F, loops, path, origin, bank, energy):
+    """The even map, which has no branch points ("Boundary First Flattening").
+
+    The logarithm u of the scale is 0 on the boundary, or another constant on a second loop, and
+    its Laplacian is the curvature.  So all angles of the outlines are known: a disk's make one
+    turn, and a small change of its lengths closes it; those of a ring make none, for the right
+    constant.  Inside the map is harmonic; what is left to choose is where the second loop lies.
+    """
+    laplacian, angles = csr_array(-igl.cotmatrix(V, F)), igl.internal_angles(V, F)
+    inner = np.setdiff1d(np.arange(len(V)), np.concatenate(loops))
+    solve = sparse.Factor(V[inner])(laplacian[inner][:, inner]) if len(inner) else np.copy
+
+    def continued(x, right=0):
+        """x with other values inside, where its Laplacian is `right` then."""
+        right = right - laplacian[inner] @ x
+        parts = [solve(part.copy()) for part in (right.real, right.imag)]
+        x[inner] = parts[0] + 1j * parts[1] if np.iscomplexobj(x) else parts[0]
+        return x
+
+    curvature = -np.bincount(F.ravel(), angles.ravel())
+    curvature[inner] += 2 * np.pi
+    curvature[np.concatenate(loops)] += np.pi
+    turn = curvature + laplacian @ continued(np.zeros(len(V)), -curvature[inner])
+    second = np.zeros(len(V))
+    if path is not None:
+        first = [np.argmax(loop == end) for loop, end in zip(loops, path[[-1, 0]], strict=True)]
+        loops = [np.roll(loop, -k) for loop, k in zip(loops, first, strict=True)]
+        second[loops[1]] = 1
+        second = continued(second)
+        change = laplacian @ second
+        turn -= turn[loops[0]].sum() / change[loops[0]].sum() * change
+    z = np.zeros(len(V), dtype=complex)
+    for k, loop in enumerate(loops):
+        way = np.exp(1j * np.cumsum([0, *turn[loop[1:]]]))
+        length = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
+        if path is None:
+            ways = np.stack([way.real, way.imag])
+            length -= length * (np.linalg.solve((ways * length) @ ways.T, ways @ length) @ ways)
+        else:
+            length = length * (-1) ** (k + 1) / np.sum(length * way)  # to the period 1 or -1
+        z[loop[1:]] = np.cumsum(length * way)[:-1] + (path is not None and k == 0)
+    jump = np.bincount(origin, energy.real @ bank)  # across the cut of a ring
+    z = continued(z, -jump[inner])[origin] + bank
+    if path is None:
+        return z - z.mean()
+    w = second[origin]
+    return z - (w @ (energy @ z)) / (w @ (energy @ w)) * w
 
 
 def _ends(V, loop):
@@ -67,11 +130,11 @@ def _ends(V, loop):
     return first, loop[ties.first_largest(np.linalg.norm(V[loop] - V[first], axis=1))]
 
 
-def _disk(z, energy, loop):
+def _disk(z, V, energy, loop):
     """The plain map of a disk, by inverse iteration from the map z."""
     count, before = len(z), 0
-    matrix = (energy + 1e-12 * energy.diagonal().mean() * eye_array(2 * count)).tocsr()
-    inverse = sparse.factor(matrix)
+    tiny = 1e-12 * energy.diagonal().real.mean() * eye_array(count)
+    inverse = sparse.Factor(V)((energy + tiny).tocsr())
     for _ in range(ROUNDS):
         z = z - z[loop].mean()
         z /= np.linalg.norm(z[loop])
@@ -79,8 +142,7 @@ def _disk(z, energy, loop):
             break
         load = np.zeros(count, dtype=complex)
         load[loop] = z[loop]
-        x = inverse(np.concatenate([load.real, load.imag]))
-        before, z = z, x[:count] + 1j * x[count:]
+        before, z = z, inverse(load)
         z *= np.exp(1j * np.angle(np.vdot(z[loop], before[loop])))  # rounding turns flat disks
     return z
 
@@ -128,47 +190,12 @@ def _ring(energy, loops, origin, bank, count):
     row = np.flatnonzero(column >= 0)
     merge = csr_array((np.ones(len(row)), (row, column[row])), shape=(2 * k, number.max() + 1))
     jump = np.concatenate([bank, np.zeros(k)])
+    energy = block_array([[energy.real, -energy.imag], [energy.imag, energy.real]])
     x = merge @ sparse.factor((merge.T @ energy @ merge).tocsr())(-merge.T @ (energy @ jump))
     return x[:k] + bank + 1j * x[k:]
 
 
-def _even(V, F, loops, flat, energy):
-    """The map whose boundary edges have lengths in proportion to those of the surface.
-
-    In steps the edges keep their directions and get the wanted lengths as targets; the sum of
-    the conformal energy and the squared distances from the targets becomes the least."""
-    count, k, origin = len(V), len(flat.z), flat.origin
-    z = flat.z[np.unique(origin, return_index=True)[1]]
-    banks = flat.z - z[origin]  # 0, or the period on one side of the cut
-    half = np.flatnonzero(mesh.opposites(F) < 0)
-    ends = np.stack([np.roll(flat.F, -1, axis=1).ravel()[half], flat.F.ravel()[half]], axis=1)
-    loop = np.isin(origin[ends[:, 1]], loops[0], invert=True).astype(int)
-    jump = banks[ends[:, 0]] - banks[ends[:, 1]]
-    length = np.linalg.norm(V[origin[ends[:, 0]]] - V[origin[ends[:, 1]]], axis=1)
-    difference = sparse.rows(np.tile([[[1.0, -1.0]]], (len(half), 1, 1)), origin[ends], count)
-    weight = BEND / length
-    merge = csr_array((np.ones(2 * k), (np.arange(2 * k), np.r_[origin, origin + count])))
-    bend = difference.T @ diags_array(weight) @ difference
-    A = merge.T @ energy @ merge + block_diag([bend, bend])
-    hold = 1e-10 * A.diagonal().mean()  # near the last map, wherever the cut is
-    solve = sparse.factor((A + hold * eye_array(2 * count)).tocsr())
-    still = merge.T @ (energy @ np.concatenate([banks.real, banks.imag]))
-    for _ in range(BENDS):
-        edge = difference @ z + jump
-        scale = np.bincount(loop, np.abs(edge)) / np.bincount(loop, length)
-        if flat.period is None:
-            scale[:] = 1  # nothing else fixes the size of a disk
-        target = scale[loop] * length * edge / np.maximum(np.abs(edge), 1e-300)
-        force = difference.T @ (weight * (target - jump)) + hold * z
-        x = solve(np.concatenate([force.real, force.imag]) - still)
-        before, z = z, x[:count] + 1j * x[count:]
-        z -= z.mean() if flat.period is None else z[0].real + 1j * z.imag.mean()
-        if np.abs(z - before - (z - before).mean()).max() < STRAIGHT * np.ptp(z.real):
-            break
-    return z[origin] + banks
-
-
-def _judged(V, F, z, faces, origin, period, ends):
+def _judged(z, V, F, faces, origin, period, ends):
     """The `Flat` of a map, scaled to the area of the surface, a disk turned to its long axis."""
     if period is None:
         z = z * np.exp(-1j * _axis(z, faces, ends))

@@ -6,11 +6,15 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from .. import measure, mesh, reference
+from .. import measure, mesh, reference, repair
 from ..reference import Reference
 from .flatten import Flat
 
 NAMES = "lam", "mu", "theta", "theta0"
+SHAPE = "flips", "darts", "corner", "area_ratio", "aspect", "planarity"
+COVERED = 0.8  # of the surface: a net that leaves out more says so
+FAR = 2  # longest edges between the net and a part of the surface that is left out
+SHRUNK = 20  # scales of the map that differ more leave parts out, however small the quads
 
 
 class Report(NamedTuple):
@@ -27,7 +31,9 @@ class Report(NamedTuple):
     mu: measure.Spread
     theta: measure.Spread
     theta0: measure.Spread
-    flips: int  # this and the next three: see `measure.quality`
+    flips: int  # this and the next five: see `measure.quality`
+    darts: int
+    corner: float
     area_ratio: float
     aspect: float
     planarity: float
@@ -47,6 +53,7 @@ class Report(NamedTuple):
     distortion_max: float = None
     surface_flips: int = None  # triangles of the surface flipped by the map
     winding: tuple = None  # (k, l): around a ring the net closes after k steps along u, l along v
+    notes: tuple = None  # what is left out of the surface, where and why, sentences
     repairs: tuple = None  # what was repaired in the input, sentences
     seconds: dict = None  # {stage: seconds}
 
@@ -73,9 +80,9 @@ def report(
     values = *measure.ratios(V, Q), *measure.angles(V, Q)
     spreads = map(measure.spread, values, wanted.values())
     quality = measure.quality(V, Q)
+    shape = (getattr(quality, name) for name in SHAPE)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
-    shape = quality.flips, quality.area_ratio, quality.aspect, quality.planarity
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
     counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
     known = (*counts, wanted, *spreads, *shape, *sizes)
@@ -87,20 +94,34 @@ def survey(
 ) -> Report:
     """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
-    net = reference.mesh(V, Q)
-    back = np.linalg.norm(net.closest(goal.V)[0] - goal.V, axis=1)
-    rim = np.linalg.norm(net.boundary(goal.V)[0] - goal.V, axis=1)
+    net, over = report(V, Q, theta=theta, theta0=theta0), reference.mesh(V, Q)
+    back = np.linalg.norm(over.closest(goal.V)[0] - goal.V, axis=1)
+    rim = np.linalg.norm(over.boundary(goal.V)[0] - goal.V, axis=1)
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
-    return report(V, Q, theta=theta, theta0=theta0)._replace(
+    covered = area_of(V, Q) / area_of(goal.V, goal.F)
+    notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))
+    scale_ratio = float(flat.scale.max() / flat.scale.min())
+    if covered < COVERED or holes > 0 or back.max() > FAR * net.edge_high:
+        why = "the quads are large for its width, ask for more"
+        if scale_ratio > SHRUNK:
+            why = f"the map to the plane has scales {scale_ratio:.3g} times apart, cut the surface"
+        far, gaps = np.argmax(back), f" and the net has {holes} holes" if holes > 0 else ""
+        notes.append(
+            f"{100 - 100 * covered:.0f} % of the surface is left out{gaps}, farthest near "
+            f"{repair.place(goal.V[far])}, {100 * back[far] / goal.diagonal:.2g} % of its diagonal "
+            f"from the net: {why}"
+        )
+    return net._replace(
         distance_mean=float(there.mean()),
         distance_max=float(there.max()),
         back_mean=float(above.mean()) if above.size else 0.0,
         back_max=float(above.max(initial=0.0)),
-        covered=area_of(V, Q) / area_of(goal.V, goal.F),
-        scale_ratio=float(flat.scale.max() / flat.scale.min()),
+        covered=covered,
+        scale_ratio=scale_ratio,
         distortion_mean=float(flat.distortion.mean()),
         distortion_max=float(flat.distortion.max()),
         surface_flips=flat.flips,
+        notes=tuple(notes),
     )
 
 
@@ -111,7 +132,7 @@ def area_of(V: np.ndarray, F: np.ndarray) -> float:
 
 def numbers(report: Report) -> dict:
     """The `Report` as a dict for JSON, angles in degrees; what does not apply is left out."""
-    r, out = report, (*NAMES, "repairs")
+    r, out = report, (*NAMES, "notes", "repairs")
     covers = r.converged is not None
     plain = {k: x for k, x in r._asdict().items() if k not in out and (covers or x is not None)}
     plain["wanted"] = {k: x if x is None else _shown(k, x) for k, x in r.wanted.items()}
@@ -139,13 +160,14 @@ def text(report: Report) -> str:
         label = f"{name} deg" if name.startswith("theta") else name
         lines.append(f"{label:12}{mean:15.9f}{low:15.9f}{high:15.9f}   {most:.3g} from {source}")
     lines.append(
-        f"{r.flips} flipped faces, smallest area {r.area_ratio:.3g} of the largest, "
-        f"aspect {r.aspect:.3g} at most, planarity {r.planarity:.3g}"
+        f"{r.flips} flipped faces, {r.darts} darts, smallest corner {np.degrees(r.corner):.3g} "
+        f"degrees, smallest area {r.area_ratio:.3g} of the largest, aspect {r.aspect:.3g} at "
+        f"most, planarity {r.planarity:.3g}"
     )
     if r.converged is not None:
         lines += [
             f"distance to the surface {100 * r.distance_mean:.2g} % of its diagonal on average, "
-            f"{100 * r.distance_max:.2g} % at most",
+            f"{100 * r.distance_max:.2g} % at most; back from it {100 * r.back_max:.2g} % at most",
             f"{100 * r.covered:.0f} % of the surface is covered; edges {r.edge_low:.3g} to "
             f"{r.edge_high:.3g}, mean {r.edge_mean:.3g}",
             f"largest quad / smallest {r.size_ratio:.3g}; conformal map: distortion "

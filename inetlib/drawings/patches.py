@@ -111,11 +111,12 @@ def next_multiple(x, step):
 
 
 def claims(name, result, Q):
-    """Steps, flips, area ratio and angles of a `solver.Result` for the manifest."""
+    """Steps, flips, darts, area ratio and angles of a `solver.Result` for the manifest."""
     quality = measure.quality(result.V, Q)
     return {
         f"{name}_steps": len(result.history) - 1,
         f"{name}_flips": quality.flips,
+        f"{name}_darts": quality.darts,
         f"{name}_area_ratio": round(quality.area_ratio, 6),
         f"{name}_theta_deg": round(float(np.degrees(result.theta)), 6),
         f"{name}_theta0_deg": round(float(np.degrees(result.theta0)), 6),

@@ -22,7 +22,7 @@ PRINTED = {
 }
 HEADER = [
     *("Fig.", "formulation", "F", "#var", "#cons", "residual", "#iter"),
-    *("max dtheta", "max dtheta0", "mean dtheta", "mean dtheta0", "flips", "area ratio"),
+    *("max dtheta", "max dtheta0", "mean dtheta", "mean dtheta0", "flips, darts", "area ratio"),
 ]
 VARIANTS = {  # formulation and weights
     "paper's, printed weights": ("paper, splu", PAPER),
@@ -67,7 +67,7 @@ def _row(Q, found):
         f"{residual:.0e}" if residual > NOISE else "< 1e-20",
         str(len(found.history) - 1),
         *(f"{x:.2g}" if x > 1e-9 else "< 1e-9" for x in np.degrees(off)),
-        str(numbers.flips),
+        f"{numbers.flips}, {numbers.darts}",
         f"{numbers.area_ratio:.3f}",
     ]
 

@@ -176,6 +176,9 @@ def _numbers():
             html.Td("flipped faces")
             html.Td("{{ numbers.flips }}", colspan=2, classes="out-flips")
         with html.Tr():
+            html.Td("darts (not convex)")
+            html.Td("{{ numbers.darts }}", colspan=2, classes="out-darts")
+        with html.Tr():
             html.Td("medial lines")
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
     words = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "

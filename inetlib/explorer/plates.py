@@ -96,6 +96,7 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
         "theta_off": short(np.degrees(about.theta.max_deviation)),
         "theta0_off": short(np.degrees(about.theta0.max_deviation)),
         "flips": str(about.flips),
+        "darts": str(about.darts),
         "size_low": short(medial.min(), 3),
         "size_high": short(medial.max(), 3),
         "theta": f"{np.degrees(theta):.10g}",

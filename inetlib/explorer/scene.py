@@ -7,6 +7,7 @@ from .. import view
 from . import look
 
 STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
+FAR = 20  # sizes from the origin: such a net is drawn about its own middle
 VIEWS = {"plane": (-90.0, 90.0)}  # azimuth and elevation of the viewer, degrees
 VIEWS |= dict.fromkeys(("isothermal", "revolution"), (-50.0, 25.0))
 VIEWS |= dict.fromkeys(("freeform", "cover"), (-60.0, 40.0))
@@ -31,6 +32,7 @@ class Scene:
         for actor in (solid, self.actor):  # no table of colours need travel
             actor.mapper.lookup_table = pyvista.LookupTable(n_values=2)
         self._known = self._layout = None
+        self.origin = np.zeros(3)  # of the scene: float32 has no digits to spare far away
 
     def show(self, V, Q, choice, dark=False, shade=None):
         """Put a net into the scene; shade: RGB bytes a face (f, 3), or None."""
@@ -39,8 +41,12 @@ class Scene:
         new, self._known = known != self._known, known
         if new:
             self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms)
+            low, high = np.min(V, axis=0), np.max(V, axis=0)
+            far = np.abs(low + high).max() > FAR * np.abs(high - low).max()
+            self.origin = (low + high) / 2 if far else np.zeros(3)
         plan = self._layout
-        self.faces.points = self.curves.points = look.points(np.asarray(V, np.float32), plan)
+        points = np.asarray(V - self.origin, np.float32)
+        self.faces.points = self.curves.points = look.points(points, plan)
         if new:  # cells: the old colours do not fit them
             self.faces.cell_data.clear()
             self.curves.cell_data.clear()
@@ -58,7 +64,9 @@ class Scene:
 
     def camera(self, V, azimuth, elevation, aspect=1.0):
         """The camera (for vtk.js) that sees all of V, angles in degrees, aspect: width / height."""
-        view.aim(self.plotter.camera, V, tuple(np.radians([azimuth, elevation])), aspect)
+        view.aim(
+            self.plotter.camera, V - self.origin, tuple(np.radians([azimuth, elevation])), aspect
+        )
         return self.plotter.camera
 
 

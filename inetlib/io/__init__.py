@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import files, mesh
+from .. import files, mesh, repair
 from . import binary, exchange, glb, text
 
 
@@ -31,18 +31,20 @@ FORMATS = {
     ".obj": Format(text.read_obj, text.write_obj, curves=True),
     ".ply": Format(binary.read_ply, binary.write_ply),
     ".off": Format(text.read_off, text.write_off),
-    ".stl": Format(binary.read_stl),
+    ".stl": Format(binary.read_stl, binary.write_stl),
     ".vtp": Format(exchange.read_vtp, exchange.write_vtp, True, "pyvista", "view"),
     ".glb": Format(glb.read_glb, glb.write_glb, curves=True),
+    ".gltf": Format(glb.read_glb),
     ".dxf": Format(None, exchange.write_dxf, True, "ezdxf", "cad"),
-    ".3dm": Format(None, exchange.write_3dm, True, "rhino3dm", "cad"),
+    ".3dm": Format(exchange.read_3dm, exchange.write_3dm, True, "rhino3dm", "cad"),
 }
 READERS = [suffix for suffix, known in FORMATS.items() if known.read]
 WRITERS = [suffix for suffix, known in FORMATS.items() if known.write]
 WITH_CURVES = [suffix for suffix, known in FORMATS.items() if known.curves]
 PACKAGES = {suffix: known.package for suffix, known in FORMATS.items() if known.package}
-SOUPS = ".stl", ".glb"  # here a point is said once a triangle
+SOUPS = ".stl", ".glb", ".gltf"  # here a point is said once a triangle
 TOO_FAR = 1e100  # products of such coordinates would overflow
+SINGLE = *SOUPS, ".3dm"  # where numbers are float32, too, and so end at 3.4e38
 
 
 class Surface(NamedTuple):
@@ -75,11 +77,12 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
             raise ValueError("a directory, no file" if path.is_dir() else "there is no such file")
         if not path.stat().st_size:
             raise ValueError("the file is empty")
+        with open(path, "rb") as file:
+            if file.read(26) == b"version https://git-lfs.gi":
+                raise ValueError("a pointer of Git LFS, not the file itself: run `git lfs pull`")
         V, F = _checked(*known.read(path))
     if path.suffix.lower() in SOUPS:
-        from ..repair import weld
-
-        return weld(V, F)
+        return repair.weld(V, F)
     return V, F
 
 
@@ -88,10 +91,8 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
 
     ValueError as in `read`, and for what is no surface."""
     V, F = read(path)
-    from ..repair import manifold
-
     with named(path):
-        V, F, repaired = manifold(V, F, merge)
+        V, F, repaired = repair.manifold(V, F, merge)
     if Path(path).suffix.lower() in SOUPS:
         repaired = ["corners of triangles at equal points were read as one vertex", *repaired]
     return Surface(V, F, repaired)
@@ -100,8 +101,13 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
 def net(path: str | Path) -> Net:
     """The file's mesh as a net, with the order and the labels of the file.
 
-    ValueError as in `read`, when no face is a quad, and when a face uses a vertex twice."""
+    A corner that repeats the one before is none.  ValueError as in `read`, when no face is a
+    quad, and when a face uses a vertex twice."""
     V, F = read(path)
+    if not isinstance(F, list) and (np.roll(F, 1, axis=1) == F).any():
+        F = F.tolist()
+    if isinstance(F, list):
+        F = repair.without_repeats(F)
     Q, others = F, []
     if isinstance(F, list):
         Q = np.array([face for face in F if len(face) == 4], dtype=np.int64)
@@ -165,9 +171,9 @@ def missing(suffix: str) -> str:
 def check_output(path: str | Path, curves: bool = False, force: bool = False) -> Format:
     """The format of a file that `write` can write; else its errors, before the work begins.
 
-    >>> check_output("net.stl")  # doctest: +ELLIPSIS
+    >>> check_output("net.step")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
-    ValueError: net.stl has the suffix '.stl': files to write end with .obj .ply .off ..."""
+    ValueError: net.step has the suffix '.step': files to write end with .obj .ply .off ..."""
     path = Path(path)
     known = _format(path, WRITERS, "write")
     if curves and not known.curves:
@@ -190,6 +196,9 @@ def write(
     curves: mesh.Families | str | None = None,
     polygons: Sequence = (),
     force: bool = False,
+    unit: str | None = None,
+    faces: bool = False,
+    up: str = "z",
 ) -> None:
     """Write a net, all of it or nothing; the suffix of the path names the format.
 
@@ -198,10 +207,14 @@ def write(
     curves    `mesh.Families` of vertex index arrays, "all" for mesh.polylines(Q), or None
     polygons  further faces: index arrays (k,)
     force     whether to replace an existing file
+    unit      of the coordinates, noted in .dxf and .3dm: "mm", "cm", "m", "in" or "ft"
+    faces     in .dxf faces of three or four corners, not one MESH
+    up        "z", or "y" for programs with y upwards: (x, y, z) is written as (x, z, -y)
 
     ValueError for unknown suffixes, directories, a missing folder, curves in a format without
-    them, and indices out of range; FileExistsError without `force`; PermissionError;
-    ImportError when the package for the format is missing."""
+    them, indices out of range, and coordinates beyond 1e38 in .stl, .glb and .3dm;
+    FileExistsError without `force`; PermissionError; ImportError when the package for the
+    format is missing."""
     check = mesh.triangles if np.ndim(Q) == 2 and np.shape(Q)[1] == 3 else mesh.check_arrays
     V, Q = check(V, Q)
     if isinstance(curves, str) and curves == "all":
@@ -211,9 +224,19 @@ def write(
     given = curves._asdict() if curves else {}
     families = {k: [_row(c, len(V), 2, "curve") for c in x] for k, x in given.items() if x}
     polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
-    known = check_output(path, bool(families), force)
+    known, suffix = check_output(path, bool(families), force), Path(path).suffix.lower()
+    if unit not in exchange.UNITS or up not in ("z", "y"):
+        raise ValueError(f'unit = {unit!r}, up = {up!r}: mm, cm, m, in or ft, and "z" or "y"')
+    if (unit and suffix not in (".dxf", ".3dm")) or (faces and suffix != ".dxf"):
+        raise ValueError(f"{path}: only .dxf and .3dm have units, only .dxf has faces")
+    if up == "y" and suffix == ".glb":
+        raise ValueError(f"{path}: y is upwards in GLB files anyway, leave `up` as it is")
+    if suffix in SINGLE and np.abs(V).max() > 1e38:
+        raise ValueError(f"{path}: no place for coordinates beyond 1e38, write .obj or .ply")
+    V = V @ glb.Y_UP.T if up == "y" else V
+    more = {".dxf": (unit, faces), ".3dm": (unit,)}.get(suffix, ())
     with files.replacing(path) as new:
-        known.write(new, V, Q, polygons, families)
+        known.write(new, V, Q, polygons, families, *more)
 
 
 def _row(given, count, least, what):

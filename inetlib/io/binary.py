@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..repair import triangulate
 from .text import decoded
 
 PLY_TYPES = {
@@ -111,12 +112,38 @@ def read_stl(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
     if len(data) == 84 + 50 * count:
         rows = np.frombuffer(data, [("floats", "<f4", (4, 3)), ("other", "<u2")], count, 84)
         corners = rows["floats"][:, 1:].astype(np.float64)
+    elif (corners := _stl_payload(data, count)) is not None:
+        pass
     elif data.lstrip()[:5].lower() == b"solid" and b"\0" not in data:
         corners = _stl_text(decoded(data).lower().splitlines())
     else:
         size = f"{len(data)} bytes, and a binary file of {count} triangles has {84 + 50 * count}"
         raise ValueError(f"no STL file, or a broken one: {size}")
     return corners.reshape(-1, 3), np.arange(corners.size // 3).reshape(-1, 3)
+
+
+def write_stl(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
+    """Write a binary STL file of triangles, float32; it has no place for curves."""
+    corners = V[triangulate(V, [*Q, *polygons])]
+    size = np.ptp(V, axis=0).max()
+    if np.spacing(np.float32(np.abs(V).max())) > 1e-5 * size:
+        raise ValueError("too far from the origin for the float32 of STL: write .obj or .ply")
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    rows = np.zeros(len(corners), dtype=[("floats", "<f4", (4, 3)), ("other", "<u2")])
+    rows["floats"][:, 0], rows["floats"][:, 1:] = normal, corners
+    path.write_bytes(bytes(80) + np.uint32(len(rows)).tobytes() + rows.tobytes())
+
+
+def _stl_payload(data, count):
+    """The corners in a binary STL file with data of their own behind the triangles, or None."""
+    at, found = 84, []
+    while len(found) < count and at + 50 <= len(data):
+        found.append(np.frombuffer(data, "<f4", 9, at + 12))
+        at += 50 + int.from_bytes(data[at + 48 : at + 50], "little")
+    if len(found) == count and at == len(data):
+        return np.array(found, dtype=np.float64)
+    return None
 
 
 def _stl_text(lines):

@@ -10,6 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
+from ..repair import triangulate
+
+UNITS = {  # the codes of DXF and Rhino
+    None: (0, "None"), "mm": (4, "Millimeters"), "cm": (5, "Centimeters"), "m": (6, "Meters"),
+    "in": (1, "Inches"), "ft": (2, "Feet"),
+}  # fmt: skip
 FAMILIES = "u", "v", "d1", "d2"
 READ_VTP = """import sys, numpy, pyvista
 found = pyvista.read(sys.argv[1])
@@ -61,17 +67,31 @@ def _colours(curves):
     return {name: tuple(bytes.fromhex(colour[1:])) for name, colour in text.items()}
 
 
-def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a DXF file (R2010, no unit): a MESH in the layer `panels`, polylines in others."""
+def write_dxf(
+    path: Path,
+    V: np.ndarray,
+    Q: np.ndarray,
+    polygons: list,
+    curves: dict,
+    unit: str | None = None,
+    faces: bool = False,
+) -> None:
+    """Write a DXF file (R2010): layer `panels` with one MESH, or faces of three and four corners,
+    which more programs read, and 3D polylines in the layers `u`, `v`, `d1`, `d2`."""
     import ezdxf
 
-    drawing = ezdxf.new("R2010", units=0)
+    drawing = ezdxf.new("R2010", units=UNITS[unit][0])
     for name, colour in _colours(curves).items():
         drawing.layers.add(name, true_color=ezdxf.rgb2int(colour))
     space = drawing.modelspace()
-    with space.add_mesh(dxfattribs={"layer": "panels"}).edit_data() as data:
-        data.vertices = V.tolist()
-        data.faces = [face.tolist() for face in [*Q, *polygons]]
+    panels = {"layer": "panels"}
+    if faces:
+        for corners in [*Q, *triangulate(V, polygons)]:
+            space.add_3dface(V[corners].tolist(), dxfattribs=panels)
+    else:
+        with space.add_mesh(dxfattribs=panels).edit_data() as data:
+            data.vertices = V.tolist()
+            data.faces = [face.tolist() for face in [*Q, *polygons]]
     for name, family in curves.items():
         for curve in family:
             closed = bool(curve[0] == curve[-1])
@@ -80,17 +100,35 @@ def write_dxf(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
     drawing.saveas(path)
 
 
-def write_3dm(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a Rhino file (version 7, no unit): a mesh in the layer `panels`, polylines in others.
+def read_3dm(path: Path) -> tuple[np.ndarray, list]:
+    """Points (n, 3) and faces of all meshes of a Rhino file; other objects are passed over."""
+    import rhino3dm as rhino
+
+    model = rhino.File3dm.Read(str(path))
+    if model is None:
+        raise ValueError("no Rhino file, or a broken one")
+    meshes = [one.Geometry for one in model.Objects if isinstance(one.Geometry, rhino.Mesh)]  # type: ignore[attr-defined]
+    if not meshes:
+        raise ValueError("the Rhino file holds no mesh: mesh its surfaces first")
+    points, faces = [], []
+    for mesh in meshes:
+        corners = (mesh.Faces[k] for k in range(len(mesh.Faces)))
+        faces += [[len(points) + c for c in dict.fromkeys(four)] for four in corners]
+        points += [mesh.Vertices.Point3dAt(k) for k in range(len(mesh.Vertices))]
+    return np.array([(p.X, p.Y, p.Z) for p in points]), faces
+
+
+def write_3dm(
+    path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict, unit: str | None = None
+) -> None:
+    """Write a Rhino file (version 7): a mesh in the layer `panels`, polylines in others.
 
     Rhino's meshes have triangles and quads only: a polygon becomes a mesh of its own, of triangles.
     """
     import rhino3dm as rhino
 
-    from ..repair import triangulate
-
     model, layers = rhino.File3dm(), {}
-    model.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, "None")
+    model.Settings.ModelUnitSystem = getattr(rhino.UnitSystem, UNITS[unit][1])
     for name, colour in _colours(curves).items():
         layer, layers[name] = rhino.Layer(), rhino.ObjectAttributes()
         layer.Name, layer.Color = name, (*colour, 255)

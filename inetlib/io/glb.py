@@ -1,38 +1,57 @@
-"""GLB (binary glTF 2.0), float32 by the format.
+"""GLB and glTF 2.0, float32 by the format.
 
 Read here and not by VTK, whose reader ends the process on some broken files."""
 
+import base64
 import json
 import struct
 from itertools import pairwise
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 
 TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+MOST = 50_000_000  # entries of an accessor
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
 
 
 def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 3) and triangles (f, 3) of all meshes of a GLB scene.
+    """Points (n, 3) and triangles (f, 3) of all meshes of a GLB or glTF scene.
 
     glTF has y upwards: (x, y, z) is returned as (x, -z, y).  Lines and points are passed over."""
     data = path.read_bytes()
-    if data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
-        raise ValueError("no GLB file (binary glTF), or a broken one")
     try:
-        length = int.from_bytes(data[12:16], "little")
-        scene = json.loads(data[20 : 20 + length])
+        if path.suffix.lower() == ".gltf":
+            scene = json.loads(data)
+            buffers = [_buffer(path, one["uri"]) for one in scene.get("buffers", [])]
+        elif data[:4] != b"glTF" or int.from_bytes(data[8:12], "little") != len(data):
+            raise ValueError("it does not begin as one, or ends early")
+        else:
+            length = int.from_bytes(data[12:16], "little")
+            scene, buffers = json.loads(data[20 : 20 + length]), [data[28 + length :]]
         if needed := scene.get("extensionsRequired"):
-            raise ValueError(f"it needs the extensions {needed}, which are not known here")
-        parts = [*_parts(scene, data[28 + length :], _roots(scene), np.eye(4))]
-    except (KeyError, IndexError, TypeError, ValueError, RecursionError) as error:
-        raise ValueError(f"the GLB file is broken ({type(error).__name__}: {error})") from error
+            words = "not known here: export it without compression"
+            raise ValueError(f"it needs the extensions {', '.join(needed)}, {words}")
+        parts = [*_parts(scene, buffers, _roots(scene), np.eye(4))]
+    except (LookupError, TypeError, ValueError, RecursionError, MemoryError) as error:
+        words = f"{type(error).__name__}: {error}"
+        raise ValueError(f"no glTF file, or a broken one ({words})") from error
     if not parts:
         raise ValueError("the file has no faces")
     points, faces = zip(*parts, strict=True)
     shifts = np.cumsum([0, *map(len, points[:-1])])
     return np.concatenate(points) @ Y_UP, np.concatenate([*map(np.add, faces, shifts)])
+
+
+def _buffer(path, uri):
+    """The bytes of a buffer, in the glTF file itself or in a file beside it."""
+    if uri.startswith("data:"):
+        return base64.b64decode(uri.partition(",")[2])
+    beside = path.parent / Path(unquote(uri)).name
+    if not beside.is_file():
+        raise ValueError(f"its file {beside.name} is not beside it")
+    return beside.read_bytes()
 
 
 def _roots(scene):
@@ -48,15 +67,16 @@ def _parts(scene, data, nodes, above):
     for node in (scene["nodes"][k] for k in nodes):
         place = above @ _matrix(node)
         for part in scene["meshes"][node["mesh"]]["primitives"] if "mesh" in node else ():
-            if part.get("mode", 4) > 4:
-                raise ValueError("it holds strips or fans of triangles")
-            if part.get("mode", 4) == 4:
+            mode = part.get("mode", 4)
+            if mode >= 4:
                 points = _array(scene, data, part["attributes"]["POSITION"], 3)
                 corners = np.arange(len(points))
                 if "indices" in part:
-                    corners = _array(scene, data, part["indices"], 1).astype(np.int64)
+                    corners = _array(scene, data, part["indices"], 1).astype(np.int64).ravel()
                 if corners.max(initial=-1) >= len(points):
                     raise ValueError(f"there is no vertex {corners.max()}, only {len(points)}")
+                if mode > 4:
+                    corners = _unrolled(corners, fan=mode == 6)
                 yield points @ place[:3, :3].T + place[:3, 3], corners.reshape(-1, 3)
         yield from _parts(scene, data, node.get("children", []), place)
 
@@ -72,15 +92,35 @@ def _matrix(node):
     return M
 
 
+def _unrolled(corners, fan):
+    """The triangles of a fan, or of a strip, in which every second one is turned round."""
+    one, two, three = corners[:-2], corners[1:-1], corners[2:]
+    if fan:
+        return np.stack([np.full_like(two, corners[0]), two, three], axis=1)
+    odd = np.arange(len(three)) % 2 == 1
+    return np.stack([np.where(odd, two, one), np.where(odd, one, two), three], axis=1)
+
+
 def _array(scene, data, number, width):
     accessor = scene["accessors"][number]
-    if "sparse" in accessor:
-        raise ValueError("it has sparse accessors, which are not known here")
-    view = scene["bufferViews"][accessor["bufferView"]]
-    kind = np.dtype(TYPES[accessor["componentType"]])
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    strides = view.get("byteStride", width * kind.itemsize), kind.itemsize
-    return np.ndarray((accessor["count"], width), kind, data, start, strides)
+    if not 0 <= accessor["count"] <= MOST:
+        raise ValueError(f"it promises {accessor['count']} numbers")
+    found = np.zeros((accessor["count"], width), TYPES[accessor["componentType"]])
+    if "bufferView" in accessor:
+        found[:] = _block(scene, data, accessor, accessor["componentType"], found.shape)
+    if (sparse := accessor.get("sparse")) is not None:
+        kind, count = sparse["indices"]["componentType"], sparse["count"]
+        at = _block(scene, data, sparse["indices"], kind, (count, 1)).ravel()
+        found[at] = _block(scene, data, sparse["values"], accessor["componentType"], (count, width))
+    return found
+
+
+def _block(scene, data, where, kind, shape):
+    """The numbers of a buffer view of the file, from a place in it on."""
+    view, kind = scene["bufferViews"][where["bufferView"]], np.dtype(TYPES[kind])
+    start = view.get("byteOffset", 0) + where.get("byteOffset", 0)
+    strides = view.get("byteStride", shape[1] * kind.itemsize), kind.itemsize
+    return np.ndarray(shape, kind, data[view.get("buffer", 0)], start, strides)
 
 
 def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
@@ -91,7 +131,9 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
     cells = {"panels": triangulate(V, [*Q, *polygons])}
     for name, family in curves.items():
         cells[name] = np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in family])
-    points = (V @ Y_UP.T).astype("<f4")
+    middle = (V.min(axis=0) + V.max(axis=0)) / 2  # float32 has no digits to spare far away
+    points = ((V - middle) @ Y_UP.T).astype("<f4")
+    place = {"translation": (Y_UP @ middle).tolist()}
     blocks = [points, *(ends.astype("<u4") for ends in cells.values())]
     starts = np.cumsum([0] + [block.nbytes for block in blocks]).tolist()
     low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
@@ -101,7 +143,7 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
         "asset": {"version": "2.0", "generator": "inetlib"},
         "scene": 0,
         "scenes": [{"nodes": list(range(len(cells)))}],
-        "nodes": [{"mesh": k, "name": name} for k, name in enumerate(cells)],
+        "nodes": [{"mesh": k, "name": name} | place for k, name in enumerate(cells)],
         "meshes": [_mesh(k, name) for k, name in enumerate(cells)],
         "materials": [_material(name, (COLOURS | {"panels": PALE})[name]) for name in cells],
         "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],

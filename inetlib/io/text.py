@@ -3,6 +3,7 @@
 Readers return points and faces as lists, counted from 0; their ValueErrors name the line."""
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 
 def decoded(data: bytes) -> str:
     """The bytes of a text file as a string; ValueError when they are something else."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise ValueError("the text is UTF-16: save it as UTF-8")
     if b"\0" in data:
         raise ValueError("the file is binary, not text: does its suffix fit?")
     return data.decode("utf-8-sig", errors="replace")  # names and comments may be anything
@@ -59,6 +62,8 @@ def read_obj(path: Path) -> tuple[list, list]:
             given = _numbers(int, corners, len(corners), number, "face")
             faces.append([k - 1 if k >= 0 else len(points) + k for k in given])
             lines.append((number, given))
+        elif words[0] in ("surf", "curv", "curv2"):
+            raise ValueError(f"line {number}: a free-form surface, no mesh: export it as a mesh")
         elif not words[0][0].isalpha():
             raise ValueError(f"line {number}: {words[0][:40]!r} is no OBJ keyword")
     for face, (number, given) in zip(faces, lines, strict=True):  # vertices may come later
@@ -73,7 +78,18 @@ def read_off(path: Path) -> tuple[list, list]:
     if not re.fullmatch("[STCN]*OFF", kind.upper()) or "BINARY" in words:
         raise ValueError(f"line {number}: a text OFF file starts with OFF, not {kind[:40]!r}")
     rows = [(number, words)] * bool(words) + rows[1:]  # the counts may follow OFF
-    number, words = rows[0] if rows else (number, [])
+    try:
+        return _off(rows)
+    except ValueError:
+        every = [(number, word) for number, words in rows for word in words]  # any line breaks
+        with suppress(ValueError):
+            return _off(_off_rows(every))
+        raise
+
+
+def _off(rows):
+    """Points and faces of the rows of an OFF file behind its first word."""
+    number, words = rows[0] if rows else (1, [])
     most = _numbers(int, words, 2, number, "pair of numbers, of vertices and faces")
     if min(most) < 0 or len(rows) < 1 + sum(most):
         words = f"{most} vertices and faces are promised, and there are {len(rows) - 1} lines"
@@ -86,6 +102,21 @@ def read_off(path: Path) -> tuple[list, list]:
         faces.append(_numbers(int, words[1:], size, number, f"face of {size} corners"))
         _check_face(faces[-1], faces[-1], len(points), 0, number)
     return points, faces
+
+
+def _off_rows(every):
+    """Rows for `_off` of (line number, word) pairs: the counts, points, and faces, without more."""
+    rows, at = [], 0
+    most = [int(word) for _, word in every[:2]]
+    sizes = [3] * (1 + most[0]) + [None] * most[1]
+    for size in sizes:
+        size = 1 + int(every[at][1]) if size is None and at < len(every) else size
+        number, words = zip(*every[at : at + (size or 1)], strict=True)
+        rows.append((number[0], list(words)))
+        at += size
+    if at != len(every):
+        raise ValueError
+    return rows
 
 
 def write_obj(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:

@@ -62,6 +62,7 @@ def optimize(
     via: str = "mean",
     stride: float = STRIDE,
     shape_steps: int = 2,
+    coupled: bool = False,
     tolerance: float = 1e-11,
     iterations: int | None = None,
     strict: bool = False,
@@ -81,14 +82,16 @@ def optimize(
     via          "mean": by goals at most `stride` apart from the mean angles of the mesh;
                  "medials", "diagonals", "squares": through an orthogonal net; "jump": at once
     shape_steps  steps with shape energies at the final angles
+    coupled      `run.coupled_step` from the first step on, not only where others make darts
     tolerance    of the angles, radians (at least what rounding of V allows)
     iterations   the most steps; of "paper" their number, 17 unless given
     strict       raise `NotConverged` instead of returning a net that is off
     progress     show a bar; callback(step, V) after every step may return False to stop
 
-    A run that ends off its angles or with flipped faces is repeated with smaller strides; of
-    all nets the one with the fewest flips, then the smallest deviation, is returned.
-    `converged`: all faces have their angles, none is flipped.  Bad input is a ValueError.
+    A run that ends off its angles is repeated with smaller strides, one that ends with flipped
+    faces or darts with `run.coupled_step`; of all nets the one with the fewest of these, then
+    the smallest deviation, is returned.  `converged`: all faces have their angles, none is
+    flipped or a dart.  Bad input is a ValueError.
 
     >>> from inetlib import surfaces
     >>> found = optimize(*surfaces.freeform_patch(8, 8), theta=1.2, theta0=1.3)
@@ -103,8 +106,10 @@ def optimize(
     _check_choice("via", via, ("mean", "jump", *run.STARTS))
     if not (stride > 0 and tolerance > 0):
         raise ValueError(f"stride = {stride}, tolerance = {tolerance}: positive radians are wanted")
-    if on_surface and not ours:
-        raise ValueError('on_surface=True needs formulation="ratio": the paper has no such step')
+    if (on_surface or coupled) and not ours:
+        raise ValueError('on_surface and coupled need formulation="ratio": the paper has neither')
+    if on_surface and coupled:
+        raise ValueError("on_surface=True knows no coupled steps: give one of the two")
     limit = np.inf if ours else guided.STEPS
     if iterations is not None:
         limit = check_whole("iterations", iterations, 0)
@@ -114,10 +119,11 @@ def optimize(
     given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        for factor in run.STRIDES if ours and via != "jump" else run.STRIDES[:1]:
+        factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
+        for couple, factor in _runs(log, factors, coupled, ours and not on_surface):
             goals = run.way(given, via, stride * factor)
             if ours:
-                run.ratio(log, goals, shape_steps, limit)
+                run.ratio(log, goals, shape_steps, limit, couple)
             else:
                 guided.run(log, goals, limit, spsolve if formulation == "paper" else None)
             if log.done or len(log.history) > limit:
@@ -128,6 +134,16 @@ def optimize(
     return result
 
 
+def _runs(log, factors, coupled, can_couple):
+    """(coupled, factor of the stride) of one run after the other, as long as they are wanted."""
+    for factor in () if coupled else factors:
+        yield None, factor
+        if log.history[-1].deviation <= log.tolerance:
+            break  # the angles are right, some faces are not: smaller strides do not help
+    if coupled or (can_couple and log.history[-1].key[0]):
+        yield from ((near, 1) for near in run.NEAR)
+
+
 def _check_choice(name, value, allowed):
     if value not in allowed:
         raise ValueError(f'{name} = "{value}": one of {", ".join(allowed)} is wanted')
@@ -136,19 +152,19 @@ def _check_choice(name, value, allowed):
 def _result(log, ours):
     """The `Result` of the best net."""
     given, count = log.given, len(log.history) - 1
-    (flips, deviation), V, s = log.best
-    good = bool(deviation <= log.tolerance and flips == 0)
+    best, V, s = log.best
+    good = bool(best.key <= (0, log.tolerance))
     if good:
         words = f"converged in {count} steps"
     elif log.stopped:
         words = f"stopped by the caller after {count} steps"
-    elif flips:
-        words = f"not converged in {count} steps, every net on the way had flipped faces"
+    elif best.key[0]:
+        words = f"not converged in {count} steps, every net on the way had flipped faces or darts"
     else:
-        words = f"not converged in {count} steps, this is the best net without flipped faces"
+        words = f"not converged in {count} steps, this is the best net without flips and darts"
     shape = map(float, (*np.exp(logs(given.goal, s)[0]), *angles(given.goal, s)))
     sizes = V.size + len(s), 2 * len(given.Q)
     if not ours:
         sizes = guided.size(given.Q, len(V), given.goal)
-    message = f"{words}: at most {np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    message = f"{words}: {best.words}"
     return Result(V, *shape, log.history, good, message, given.seconds, sizes)

@@ -52,13 +52,12 @@ def optimize(
     with tqdm(disable=not progress, unit=" steps", desc="coarse grid") as bar:
         for sizes in plans if plans[0] != plans[1] else plans[:1]:
             found = _attempt(X, wanted, sizes, tolerance, seconds, bar)
-            best = min(best or found, found, key=lambda one: one[1])
-            if best[1] <= (0, tolerance):
+            best = min(best or found, found, key=lambda one: one[1].key)
+            if best[1].key <= (0, tolerance):
                 break
-    V, (flips, deviation), history, words = best
-    good = bool(flips == 0 and deviation <= tolerance)
-    message = f"{'' if good else 'not '}converged: {words}; at most "
-    message += f"{np.degrees(deviation):.3g} degrees off, {flips} flipped faces"
+    V, last, history, words = best
+    good = bool(last.key <= (0, tolerance))
+    message = f"{'' if good else 'not '}converged: {words}; {last.words}"
     shape = (*map(float, np.exp(logs(wanted, [])[0])), *wanted.values)
     return Result._make([V, *shape, history, good, message, seconds, (V.size, 2 * m * n)])
 
@@ -84,7 +83,7 @@ def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
 
 
 def _attempt(X, goal, sizes, tolerance, seconds, bar):
-    """(V, (flips, deviation), history, words) of one run through the levels."""
+    """(V, its `run.Step`, history, words) of one run through the levels."""
     P = np.moveaxis(X, 2, 0)
     with timed(seconds, "coarse"):
         V = _vertices(refine(P, *sizes[0]))
@@ -106,9 +105,8 @@ def _attempt(X, goal, sizes, tolerance, seconds, bar):
             break
     nets = [refine(net, *sizes[-1]) for net in ([P] if good else [P, np.moveaxis(X, 2, 0)])]
     measured = _judge(sizes[-1], goal, {})
-    steps = ((P, step) for P in nets if (step := measured(P)))
-    found = [(_vertices(P).copy(), (step.flips, step.deviation)) for P, step in steps]
-    return *min(found, key=lambda one: one[1]), history, ", ".join(words)
+    found = [(_vertices(P).copy(), step) for P in nets if (step := measured(P))]
+    return *min(found, key=lambda one: one[1].key), history, ", ".join(words)
 
 
 def _level(P, goal, most, exact, enough, seconds, bar):
@@ -129,7 +127,7 @@ def _level(P, goal, most, exact, enough, seconds, bar):
         off = np.degrees(step.deviation)
         bar.set_description(f"{size[0]} x {size[1]} quads, {off:.2g} degrees off")
         bar.update()
-    return P, history, step and not step.flips and step.deviation <= enough
+    return P, history, step and step.key <= (0, enough)
 
 
 def _judge(size, goal, seconds):

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import bsr_array, csr_array, diags_array
+from scipy.sparse import bsr_array, csr_array, diags_array, kron
 from tqdm import tqdm
 
 from .. import measure
@@ -18,6 +18,9 @@ from .problem import Problem, shape
 Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
+COUPLING = 100  # weight of shifting every other vertex in the size of a coupled step
+LOOSE = 1e-6, 0.0  # weights of that size, and of the distances from the reference, at the end
+NEAR = (1e-5, 1.0), (1e-4, 0.1), (1e-3, 0.01)  # and before: as near as can be, else less
 STARTS = {
     "medials": {"theta0": np.pi / 2},
     "diagonals": {"theta": np.pi / 2},
@@ -32,8 +35,6 @@ WORSE = 3  # angle steps in a row without progress end a run
 class Step(NamedTuple):
     """One iteration and the net after it."""
 
-    """One iteration and the net after it."""
-
     kind: str  # "start", "shape", "angle" or "guided"
     goal: Goal  # of this step
     residual: float  # sum of the squared residuals of the formulation's equations
@@ -43,11 +44,23 @@ class Step(NamedTuple):
     theta0_mean: float
     size: float  # the longest way of a vertex
     flips: int  # flipped faces
+    darts: int  # faces that are not convex
 
     @property
     def deviation(self) -> float:
         """The larger of theta_max and theta0_max."""
         return max(self.theta_max, self.theta0_max)
+
+    @property
+    def key(self) -> tuple[int, float]:
+        """How bad the net is: (faces flipped or not convex, deviation), the smaller the better."""
+        return self.flips + self.darts, self.deviation
+
+    @property
+    def words(self) -> str:
+        """The key in words."""
+        off = f"at most {np.degrees(self.deviation):.3g} degrees off"
+        return f"{off}, {self.flips} flipped faces, {self.darts} darts"
 
 
 @contextmanager
@@ -77,8 +90,8 @@ def judge(
         found = np.log(np.stack(measure.ratios(V, Q)))
         residual = np.sum((found - logs(wanted, s)[0][:, None]) ** 2)
     spread = (float(f(x)) for x in off for f in (np.max, np.mean))
-    flips = len(measure.flipped(V, Q, neighbours))
-    return Step._make([*step, float(residual), *spread, float(size), flips])
+    faults = len(measure.flipped(V, Q, neighbours)), len(measure.nonconvex(V, Q))
+    return Step._make([*step, float(residual), *spread, float(size), *faults])
 
 
 def equations(
@@ -115,15 +128,58 @@ def shape_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
         A = A + J.T @ J
         diagonal = A.diagonal() + np.repeat(problem.weights.closeness, 3)
         A.setdiag(diagonal + REGULAR * diagonal.mean())
-        right = np.column_stack([root * g + J.T @ f, J.T @ G])
     with timed(problem.seconds, "factor"):
         solve = problem.shape_factor(A)
     with timed(problem.seconds, "solve"):
-        y = solve(right)
-        B = right[:, 1:].T
-        ds = _freedom(G.T @ G - B @ y[:, 1:], G.T @ f - B @ y[:, 0])
-        d = root * (y[:, 1:] @ ds - y[:, 0])
-    return d.reshape(-1, 3), ds
+        y, ds = _least(solve, J, f, G, root * g)
+    return (root * y).reshape(-1, 3), ds
+
+
+def _least(solve, J, f, G, g):
+    """(y, ds) with the least |f + J y - G ds|^2 + other energies of y, half of their slope g."""
+    right = np.column_stack([g + J.T @ f, J.T @ G])
+    y = solve(right)
+    B = right[:, 1:].T
+    ds = _freedom(G.T @ G - B @ y[:, 1:], G.T @ f - B @ y[:, 0])
+    return y[:, 1:] @ ds - y[:, 0], ds
+
+
+def coupled_step(
+    problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray, weights: tuple[float, float]
+) -> Change:
+    """(change of V, change of s): a small change to the angles that makes no darts.
+
+    The angles see diagonals only, so that shifting every other vertex costs nothing (darts).
+    Here the size of a change d is sum |d|^2 / mobility over the vertices, plus COUPLING times
+    sum |d1 - d2 + d3 - d4|^2 / 4 over the corners of the faces, all in local lengths.
+    weights: of this size, and of the distances from the tangent planes of the reference,
+    beside the equations.
+    """
+    with timed(problem.seconds, "assemble"):
+        f, J, G = equations(problem, V, goal, s)
+        root = np.repeat(np.sqrt(problem.mobility), 3)
+        long = np.linalg.norm(np.stack(measure.vectors(V, problem.Q)[:2]), axis=2).mean(axis=0)
+        corners = problem.Q.ravel()
+        reach = np.bincount(corners, np.repeat(long, 4)) / np.bincount(corners)
+        twist = np.array([0.5, -0.5, 0.5, -0.5]) / long[:, None, None]
+        T = kron(sparse.rows(twist, problem.Q, len(V)), np.eye(3), format="csr")
+        T, J = sparse.scaled(T, root), sparse.scaled(J, root)
+        A = COUPLING * (T.T @ T) + diags_array(np.repeat(reach, 3) ** -2)
+        loose, close = weights
+        A, g = loose * A + J.T @ J, 0
+        if close and problem.reference is not None:
+            off, normals = residuals.distances(V, *problem.reference.closest(V))
+            at = sparse.coordinates(np.arange(len(V))[:, None])
+            N = sparse.scaled(sparse.rows(normals / reach[:, None, None], at, V.size), root)
+            A, g = A + close * (N.T @ N), close * (N.T @ (off.ravel() / reach))
+    with timed(problem.seconds, "factor"):
+        solve = problem.shape_factor(A.tocsr())
+    with timed(problem.seconds, "solve"):
+        y, ds = _least(solve, J, f, G, g)
+        if not close:  # the weight of the size is not so small
+            more, further = _least(solve, J, f + J @ y - G @ ds, G, 0)
+            y, ds = y + more, ds + further
+    return (root * y).reshape(-1, 3), ds
 
 
 def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Change:
@@ -171,7 +227,8 @@ def _metric(problem, V):
 class Log:
     """The history of an optimisation and its best net.
 
-    best: ((flips, deviation), V, s) of the best net so far; `stopped` by the callback."""
+    best: (step, V, s) of the best net so far, see `Step.key`; `stopped` by the callback.
+    """
 
     def __init__(self, given, tolerance, progress, callback):
         self.given, self.callback = given, callback
@@ -195,9 +252,8 @@ class Log:
             except ValueError:
                 return None
         self.history.append(step)
-        key = step.flips, step.deviation
-        if self.best is None or key < self.best[0]:
-            self.best = key, V, s
+        if self.best is None or step.key < self.best[0].key:
+            self.best = step, V, s
         self.bar.set_description(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
         self.bar.update()
         if kind != "start" and self.callback is not None:
@@ -206,9 +262,8 @@ class Log:
 
     @property
     def done(self) -> bool:
-        """Whether the last net has its angles and no flipped face, or a caller said stop."""
-        last = self.history[-1]
-        return self.stopped or (last.deviation <= self.tolerance and last.flips == 0)
+        """Whether the last net has its angles and no faulty face, or a caller said stop."""
+        return self.stopped or self.history[-1].key <= (0, self.tolerance)
 
 
 def nearest(goal: Goal, V: np.ndarray, Q: np.ndarray) -> np.ndarray:
@@ -233,10 +288,13 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
     return first + leg(given.goal)
 
 
-def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float) -> None:
+def ratio(
+    log: Log, goals: list[Goal], shape_steps: int, limit: float, coupled: tuple | None
+) -> None:
     """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
 
-    goals: of the first steps, see `way`; limit: the most steps."""
+    goals: of the first steps, see `way`; limit: the most steps; coupled: None, or one of `NEAR`.
+    """
     given, final = log.given, log.given.goal
     plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
     plan += [("shape", final)] * (shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
@@ -247,8 +305,10 @@ def ratio(log: Log, goals: list[Goal], shape_steps: int, limit: float) -> None:
             return
         if goal is not before:
             before, s = goal, nearest(goal, V, given.Q)
-        take = shape_step if kind == "shape" else angle_step
-        d, ds = take(given, V, goal, s)
+        if coupled:
+            d, ds = coupled_step(given, V, goal, s, coupled if kind == "shape" else LOOSE)
+        else:
+            d, ds = (shape_step if kind == "shape" else angle_step)(given, V, goal, s)
         parts = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
         part = next(parts, 0.0)
         V, s = V + part * d, s + part * ds

@@ -90,7 +90,7 @@ def _banded(A):
         return None
     below = np.repeat(np.arange(count), np.diff(A.indptr)) - A.indices
     low = below >= 0
-    band = np.zeros((width + 1, count), order="F")
+    band = np.zeros((width + 1, count), dtype=A.dtype, order="F")
     band[below[low], A.indices[low]] = A.data[low]
     try:
         with BLAS.limit(limits=1, user_api="blas"):  # on small blocks more threads only wait
