@@ -209,7 +209,8 @@ def _cover(given):
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
     ways = {"tolerance": given.tolerance, "progress": _progress(given)}
-    found = design.cover(V, F, *asked, **ways)
+    with io.named(given.surface, V, counted=False):
+        found = design.cover(V, F, *asked, **ways)
     about = found.report
     said = [*about.notes, *repaired, *about.repairs]
     notes = [f"{given.surface}: {x}" for x in dict.fromkeys(said)]
@@ -369,18 +370,23 @@ def notebooks(folder: Path, name: str) -> list[str]:
 
 def _read_net(given, must_label=True):
     """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
-    from . import io, mesh, repair
+    from . import io, measure, mesh, repair
 
-    V, Q, polygons, notes = repair.welded(*io.net(given.net))
+    net = io.net(given.net)
+    V, Q, polygons, notes = repair.welded(*net)
+    as_read = given.net, V, len(V) == len(net.V)
+    labelled = Q
     try:
-        labelled = mesh.label(Q)
+        with io.named(*as_read):
+            labelled = mesh.label(Q)
         if (labelled != Q).any():
             notes += ["the faces did not agree on u and v: all are labelled like the first one now"]
     except ValueError as reason:
         if must_label:
             raise
-        labelled = Q
-        notes += [f"the numbers are those of the labels in the file: {reason}"]
+        notes += [f"{reason}; the numbers are those of the labels in the file"]
+    with io.named(*as_read):
+        measure.quality(V, labelled)  # refuses collapsed faces
     return V, labelled, polygons, notes + _turned(V, labelled, given.theta, given.theta0)
 
 

@@ -25,8 +25,8 @@ def _vectors_and_lengths(V, Q):
     lengths = [np.sqrt(_dot(a, a)) for a in found]
     for length, what in zip(lengths, ("diagonal",) * 2 + ("medial line",) * 2, strict=True):
         if not length.all():
-            face = np.argmin(length)
-            raise ValueError(f"face {face} has a {what} of length zero: no ratio or angle there")
+            words = f"the face {{}} has a {what} of length zero: no ratio or angle there"
+            raise mesh.Fault(words, np.asarray(Q)[np.argmin(length)])
     return found, lengths
 
 
@@ -165,7 +165,7 @@ class Quality(NamedTuple):
 def quality(V: ArrayLike, Q: ArrayLike) -> Quality:
     """The `Quality` of a mesh; ValueError where a face has no area."""
     (d1, d2, _, _), (length1, length2, length13, length24) = _vectors_and_lengths(V, Q)
-    normal, twice_area = _normals(d1, d2)
+    normal, twice_area = _normals(d1, d2, Q)
     turned = _against(normal, mesh.face_neighbours(Q))
     aspect = np.maximum(length13 / length24, length24 / length13).max()
     v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
@@ -202,15 +202,16 @@ def flipped(V: ArrayLike, Q: ArrayLike, neighbours: np.ndarray | None = None) ->
     """The flipped faces (see `quality`); neighbours: `mesh.face_neighbours(Q)` if known."""
     d1, d2, _, _ = vectors(V, Q)
     neighbours = mesh.face_neighbours(Q) if neighbours is None else neighbours
-    return _against(_normals(d1, d2)[0], neighbours)
+    return _against(_normals(d1, d2, Q)[0], neighbours)
 
 
-def _normals(d1, d2):
+def _normals(d1, d2, Q):
     """Unit normals of the faces and twice their areas."""
     normal = _cross(d1, d2)
     twice_area = np.sqrt(_dot(normal, normal))
     if not twice_area.all():
-        raise ValueError(f"face {np.argmin(twice_area)} has no area: its diagonals are parallel")
+        face = np.asarray(Q)[np.argmin(twice_area)]
+        raise mesh.Fault("the face {} has no area: its diagonals are parallel", face)
     return normal / twice_area[:, None], twice_area
 
 

@@ -24,6 +24,32 @@ from . import ties
 from .parallelogram import check_whole
 
 
+class Fault(ValueError):
+    """What is wrong with a mesh at some of its vertices, in a sentence that has {} for where.
+
+    >>> Fault("the edge {} belongs to more than two faces", [7, 2])
+    Fault('the edge 7-2 belongs to more than two faces')"""
+
+    def __init__(self, words: str, vertices: ArrayLike, V: np.ndarray | None = None):
+        self.words, self.vertices, self.V = words, np.ravel(vertices), V
+        super().__init__(self.told())
+
+    def told(self, V: np.ndarray | None = None, first: int | None = 0) -> str:
+        """The sentence: numbers from `first` on (None: without), and with V (n, 3) a point."""
+        V, where = self.V if V is None else V, []
+        if first is not None:
+            some = "-".join(str(k + first) for k in self.vertices[:6])
+            where.append(some + "-..." * (len(self.vertices) > 6))
+        if V is not None:
+            where.append(f"near {place(V[self.vertices[0]])}")
+        return self.words.format(" ".join(where))
+
+
+def place(point: np.ndarray) -> str:
+    """A point in words."""
+    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+
+
 def grid_quads(m: int, n: int) -> np.ndarray:
     """Quads (m n, 4) of a grid of (m+1)(n+1) vertices, vertex (i, j) numbered i (n+1) + j.
 
@@ -72,8 +98,7 @@ def check_faces(F: ArrayLike) -> np.ndarray:
         raise ValueError(f"face {face} names vertex {F.min()}: counting starts at 0")
     repeated = np.any([a == b for a, b in combinations(F.T, 2)], axis=0)
     if repeated.any():
-        face = np.argmax(repeated)
-        raise ValueError(f"face {face} uses a vertex twice: {F[face].tolist()}")
+        raise Fault("the face {} uses a vertex twice", F[np.argmax(repeated)])
     return F.astype(np.int64, copy=False)
 
 
@@ -108,7 +133,7 @@ def _check_vertices(V, F):
         raise ValueError(f"face {face} names vertex {F.max()}: there are only {len(V)} vertices")
     finite = np.isfinite(V).all(axis=1)
     if not finite.all():
-        raise ValueError(f"vertex {np.argmin(finite)} has a coordinate that is not a finite number")
+        raise Fault("vertex {} has a coordinate that is not a finite number", np.argmin(finite))
     return V.astype(np.float64, copy=False)
 
 
@@ -126,7 +151,8 @@ def pairs(F: np.ndarray) -> np.ndarray:
     three = np.flatnonzero(same[1:] & same[:-1])
     if three.size:
         h = order[three[0]]
-        raise ValueError(f"edge {start[h]}-{end[h]} belongs to more than two faces: not a manifold")
+        words = "the edge {} belongs to more than two faces: not a manifold"
+        raise Fault(words, [start[h], end[h]])
     first = np.flatnonzero(same)
     return np.stack([order[first], order[first + 1]], axis=1)
 
@@ -141,12 +167,12 @@ def opposites(F: np.ndarray) -> np.ndarray:
 
     ValueError for non-manifold edges and for neighbouring faces of opposite orientation."""
     one, two = pairs(F).T
-    start, sides = F.ravel(), F.shape[1]
-    clash = np.flatnonzero(start[one] == start[two])
+    start, end = half_edges(F)
+    clash = one[start[one] == start[two]]
     if clash.size:
-        faces = one[clash[0]] // sides, two[clash[0]] // sides
-        hint = ": see mesh.label" if sides == 4 else ""
-        raise ValueError(f"faces {faces[0]} and {faces[1]} are oriented against each other{hint}")
+        hint = ": see mesh.label" if F.shape[1] == 4 else ""
+        words = "the faces at the edge {} are oriented against each other" + hint
+        raise Fault(words, [start[clash[0]], end[clash[0]]])
     twin = np.full(F.size, -1)
     twin[one], twin[two] = two, one
     return twin
@@ -163,7 +189,7 @@ def boundary_loops(F: ArrayLike) -> list[np.ndarray]:
     start, end = np.array(half_edges(F))[:, opposites(F) < 0]
     touching = np.flatnonzero(np.bincount(start) > 1)
     if touching.size:
-        raise ValueError(f"two boundary loops touch at vertex {touching[0]}: not a manifold")
+        raise Fault("two boundary loops touch at vertex {}: not a manifold", touching[0])
     following = dict(zip(start.tolist(), end.tolist(), strict=True))
     loops = []
     while following:
@@ -188,7 +214,7 @@ def fans(Q: ArrayLike) -> dict[int, np.ndarray]:
             fan.append(turn[fan[-1]])
             if (again := fan[-1] == fan[0]).any():
                 at = start[fan[0][np.argmax(again)]]
-                raise ValueError(f"the faces at vertex {at} form two fans: not a manifold")
+                raise Fault("the faces at vertex {} form two fans: not a manifold", at)
         found[int(k)] = np.stack(fan, axis=1)
     return found
 
@@ -241,30 +267,32 @@ def label(Q: ArrayLike) -> np.ndarray:
     start = Q.ravel()
     swap, loop = two_colour(len(Q), one // 4, two // 4, start[one] == start[two])
     if loop is not None:
-        raise ValueError(f"the mesh is not orientable: see the loop of faces {loop}")
+        words = "the mesh is not orientable: see the loop of faces that begin with the vertices {}"
+        raise Fault(words, Q[loop, 0])
     Q[swap] = Q[swap][:, [0, 3, 2, 1]]
     twin = twins(Q)
     one = np.flatnonzero(twin >= 0)
     turn, loop = two_colour(len(Q), one // 4, twin[one] // 4, (one - twin[one]) % 2 == 1)
     if loop is not None:
-        raise ValueError("no consistent u/v labelling: " + _obstruction(Q, loop))
+        words, vertices = _obstruction(Q, loop)
+        raise Fault("no consistent u/v labelling: " + words, vertices)
     Q[turn] = np.roll(Q[turn], 1, axis=1)
     return Q
 
 
 def _obstruction(Q, loop):
-    """Why no labelling exists, in words: a vertex, a boundary loop, or the given face loop."""
+    """Why no labelling exists, and where: a vertex, a boundary loop, or the given face loop."""
     faces = np.bincount(Q.ravel())
     loops = sorted(boundary_loops(Q), key=len)  # a hole says more than the outline
     inner = np.setdiff1d(np.flatnonzero(faces % 2 == 1), np.concatenate([[], *loops]))
     if inner.size:
-        return f"interior vertex {inner[0]} has the odd valence {faces[inner[0]]}"
+        return f"interior vertex {{}} has the odd valence {faces[inner[0]]}", inner[0]
     for ring in loops:
         if (total := faces[ring].sum()) % 2:
-            ring = f"{ring[:6].tolist()}{' ...' if len(ring) > 6 else ''}"
-            words = f"the boundary loop through the vertices {ring}"
-            return f"{words} has an odd sum of (valence - 1), {total}"
-    return f"u and v change places along the closed loop of faces {loop}"
+            words = "the boundary loop through the vertices {} has an odd sum of (valence - 1)"
+            return f"{words}, {total}", ring
+    words = "u and v change places along the closed loop of faces that begin with the vertices {}"
+    return words, Q[loop, 0]
 
 
 class Families(NamedTuple):

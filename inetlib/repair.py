@@ -62,9 +62,14 @@ def manifold(V: np.ndarray, F: Sequence, merge: bool = True) -> tuple:
                 raise ValueError("a cut would be closed")
             return W, G, said + more
         except ValueError as error:
-            refused = f"duplicate vertices were not merged: {error}"
+            refused = _unmerged(error, V)
     V, T, more = _oriented(V, T)
     return V, T, [*said, refused, *more] if merge else said + more
+
+
+def _unmerged(error, V):
+    words = error.told(V, first=None) if isinstance(error, mesh.Fault) else error
+    return f"duplicate vertices were not merged: {words}"
 
 
 def _in_one_piece(F):
@@ -151,7 +156,7 @@ def divide(V: np.ndarray, T: np.ndarray, tolerance: float) -> tuple:
     for face in gone:
         corners = [[T[face, k], *inserted.get(3 * face + k, [])] for k in range(3)]
         polygon = np.concatenate(corners)
-        new.append(polygon[_ears(V[polygon])])
+        new.append(_ears(V, polygon))
     return np.concatenate([np.delete(T, gone, axis=0), *new]), int(count)
 
 
@@ -163,7 +168,10 @@ def orient(T: np.ndarray) -> tuple:
     clash = T.ravel()[one] == T.ravel()[two]
     turn, loop = mesh.two_colour(len(T), one // 3, two // 3, clash)
     if loop is not None:
-        raise ValueError(f"the surface is one-sided: see the loop of triangles {loop[:6]} ...")
+        words = (
+            "the surface is one-sided: see the loop of triangles that begin with the vertices {}"
+        )
+        raise mesh.Fault(words, T[loop, 0])
     piece = components(len(T), one // 3, two // 3)
     turn ^= (np.bincount(piece, turn) > np.bincount(piece) / 2)[piece]
     return np.where(turn[:, None], T[:, ::-1], T), int(turn.sum())
@@ -176,8 +184,7 @@ def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
     area = np.linalg.norm(normal, axis=1)
     flat = ~(area > FLAT * np.sum(sides**2, axis=2).max(axis=1))
     if flat.any():
-        corners = T[np.argmax(flat)].tolist()
-        raise ValueError(f"the triangle {corners} near {place(V[corners[0]])} has no area")
+        raise mesh.Fault("the triangle {} has no area", T[np.argmax(flat)], V)
     return normal / area[:, None]
 
 
@@ -186,8 +193,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
     if pinched.size:
-        k, near = pinched[0], place(V[pinched[0]])
-        raise ValueError(f"the faces at vertex {k}, near {near}, form two fans: not a manifold")
+        raise mesh.Fault("the faces at vertex {} form two fans: not a manifold", pinched[0], V)
 
 
 def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
@@ -232,11 +238,6 @@ def components(count: int, one: np.ndarray, two: np.ndarray) -> np.ndarray:
     return connected_components(graph, directed=False)[1]
 
 
-def place(point: np.ndarray) -> str:
-    """A point in words."""
-    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
-
-
 def weld(V: np.ndarray, F: np.ndarray) -> tuple:
     """(V, F), equal points as one vertex, in the order of their first use; F of any shape."""
     _, first, place = np.unique(V[F.ravel()] + 0.0, axis=0, return_index=True, return_inverse=True)
@@ -262,7 +263,7 @@ def welded(V: np.ndarray, Q: np.ndarray, polygons: Sequence = ()) -> tuple:
         if closed and _in_one_piece(Q):
             raise ValueError("a cut would be closed")
     except ValueError as error:
-        return V, Q, polygons, [f"duplicate vertices were not merged: {error}"]
+        return V, Q, polygons, [_unmerged(error, V)]
     if not count:
         return V, Q, polygons, []
     used, joined = np.unique(joined, return_inverse=True)
@@ -286,14 +287,15 @@ def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:
         if size == 4 and np.diff(np.sort(group)).all():
             group = mesh.triangles(V, group)[1]
         elif size > 3:
-            group = np.concatenate([face[_ears(V[face])] for face in group])
+            group = np.concatenate([_ears(V, face) for face in group])
         parts.append(group)
         owner.append(np.repeat(which, size - 2))
     return np.concatenate(parts)[np.argsort(np.concatenate(owner), kind="stable")]
 
 
-def _ears(P):
-    """Triangles (k - 2, 3) of a polygon P (k, 3), the shortest good cut first; no straight ears."""
+def _ears(V, face):
+    """Triangles (k - 2, 3) of a face (k,), the shortest good cut first; no straight ears."""
+    P = V[face]
     normal = np.cross(P - P[0], np.roll(P, -1, axis=0) - P[0]).sum(axis=0)
     normal /= np.linalg.norm(normal) or 1.0
     little = FLAT * np.sum(np.ptp(P, axis=0) ** 2)
@@ -308,9 +310,9 @@ def _ears(P):
         )  # corners, or bridges to them
         good = np.flatnonzero(turned & ~(inside.all(axis=1) & ~own).any(axis=1))
         if not good.size:
-            raise ValueError(f"the face at {place(P[0])} has no area, or sides that cross")
+            raise mesh.Fault("the face {} has no area, or sides that cross", face, V)
         cuts = np.linalg.norm(P[ears[good, 2]] - P[ears[good, 0]], axis=1)
         k = good[ties.first_smallest(cuts)]
         found.append(ears[k])
         left = np.delete(left, k)
-    return np.array([*found, left])
+    return face[np.array([*found, left])]

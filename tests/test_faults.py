@@ -8,7 +8,7 @@ import pytest
 from test_cli import inet, numbers  # noqa: F401  a fixture
 from test_io import glb, put, refused, triangle_scene
 
-from inetlib import design, io, loxodrome, measure, mesh, planar, repair, solver, surfaces
+from inetlib import design, examples, io, loxodrome, measure, mesh, planar, repair, solver, surfaces
 
 ANGLES = np.radians([60, 60])
 
@@ -134,7 +134,7 @@ def test_t_junctions_are_mended_and_said():
 
 def test_slivers_are_named_bent_quads_cut_inside_and_bridged_holes_cut():
     V = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 1], [0, 10, 0], [5, -1e-9, 0]], dtype=float)
-    with pytest.raises(ValueError, match=r"\[0, 4, 1\] near \(0, 0, 0\) has no area"):
+    with pytest.raises(ValueError, match=r"triangle 0-4-1 near \(0, 0, 0\) has no area"):
         design.cover(V, np.array([[0, 1, 2], [0, 2, 3], [0, 4, 1]]), *ANGLES)
     V = np.array([[0, 0, 0], [2, 0, 0], [4, 0, 0], [4, 4, 0.2]], dtype=float)
     assert mesh.triangles(V, [[0, 1, 2, 3]])[1].tolist() == [[0, 1, 3], [1, 2, 3]]
@@ -253,3 +253,31 @@ def test_angles_and_webs_beyond_the_digits_are_refused_in_a_sentence():
         loxodrome.web(surfaces.cone_profile(0.1, 1e-3), 1.0, 0.05, 3000)
     net = loxodrome.web(surfaces.sphere_profile(), *np.radians([20, 20]), 3)
     assert "faces are flipped or darts" in net.message
+
+
+@pytest.mark.parametrize("suffix, first", [(".obj", 1), (".ply", 0), (".off", 0)])
+def test_numbers_of_vertices_are_those_of_the_file(inet, tmp_path, suffix, first):  # noqa: F811
+    V, Q = surfaces.freeform_patch(3, 3)
+    V[Q[4, 2]] = V[Q[4, 0]]  # a diagonal of length zero
+    io.write(tmp_path / f"net{suffix}", V, Q)
+    corners = "-".join(str(k + first) for k in Q[4])
+    code, _, err = inet("optimize", f"net{suffix}", "--theta", "80", "-o", "new.obj")
+    assert code == 2
+    assert f"net{suffix}: the face {corners} near {mesh.place(V[Q[4, 0]])} has a diagonal" in err
+    V, F = surfaces.freeform_patch(3, 3)[0], mesh.triangles(*surfaces.freeform_patch(3, 3))[1]
+    F = np.concatenate([F, [[*F[5, :2], 15], [*F[5, :2], 12]]])  # four triangles at an edge
+    io.write(tmp_path / f"sheet{suffix}", V, F)
+    with pytest.raises(ValueError, match="more than two faces") as caught:
+        io.surface(tmp_path / f"sheet{suffix}")
+    edge = "-".join(str(k + first) for k in F[5, :2])
+    back = "-".join(str(k + first) for k in F[5, 1::-1])
+    words = str(caught.value)
+    assert f"{edge} near" in words or f"{back} near" in words
+    assert any(mesh.place(V[k]) in words for k in F[5, :2])
+
+
+def test_the_bar_names_every_stage_of_a_cover(capfd):
+    design.cover(*examples.wavy_roof(10), *ANGLES, count=50, progress=True)
+    shown = capfd.readouterr().err
+    for stage in ("check", "flatten", "grid", "angle step", "report"):
+        assert stage in shown

@@ -361,7 +361,7 @@ BAD = [
     (".obj", "v 0 0 0\nf 0 1 2\n", "line 2: there is no vertex 0, only 1 to 1"),
     (".obj", "v 0 0 0\nf -1 -2 -3\n", "line 2"),
     (".obj", "v 0 0 0\nf 1 1\n", "line 2: a face needs three corners"),
-    (".obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "vertex 2 .*no usable number"),
+    (".obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n", "vertex 3 .*no usable number"),
     (".obj", "v 0 0 0\nv 1 0 0\n", "no faces"),
     (".obj", "v 0 0 0\nf a b c\n", "line 2: 'a b c' is no face"),
     (".off", OFF, "ends early"),

@@ -145,11 +145,6 @@ def as_curves(lines):
     return {min(tuple(line), tuple(line[::-1])) for line in (list(map(int, x)) for x in lines)}
 
 
-def named(caught):
-    """The list of numbers in an error message."""
-    return [int(k) for k in re.search(r"\[(.*)\]", str(caught.value))[1].split(", ")]
-
-
 @given(sizes, sizes)
 def test_grid_quads_are_those_of_a_plain_loop(m, n):
     Q = mesh.grid_quads(float(m), n)
@@ -216,13 +211,17 @@ BAD = {
     "booleans": (PLANE, GRID > 3, "of type bool: integers are wanted"),
     "a negative index": (PLANE, GRID - 1, "face 0 names vertex -1: counting starts at 0"),
     "counting from one": (PLANE, GRID + 1, "face 3 names vertex 9: .* only 9 vertices"),
-    "a vertex twice": (PLANE, [[0, 1, 2, 3], [4, 5, 6, 5]], "face 1 uses a vertex twice"),
+    "a vertex twice": (PLANE, [[0, 1, 2, 3], [4, 5, 6, 5]], "face 4-5-6-5 uses a vertex twice"),
     "NaN": (PLANE + HOLE, GRID, "vertex 5 has a coordinate that is not a finite number"),
     "plane vertices": (PLANE[:, :2], GRID, r"V has the shape \(9, 2\)"),
     "complex vertices": (PLANE * 1j, GRID, "type complex128: .* three real coordinates"),
     "words": (PLANE.astype(str), GRID, "three real coordinates"),
     "three faces at an edge": (PLANE, FLAPS, "edge 0-1 belongs to more than two faces"),
-    "a face upside down": (PLANE, OVER, "faces (. and 2|2 and .) are oriented against each other"),
+    "a face upside down": (
+        PLANE,
+        OVER,
+        "the edge (3-4|4-3|4-7|7-4) are oriented against each other",
+    ),
     "a face twice": (PLANE, np.concatenate([GRID, GRID[:1]]), "more than two|against"),
 }
 
@@ -329,17 +328,19 @@ def test_label_puts_other_meshes_in_order_and_keeps_the_first_face_of_each_part(
 @pytest.mark.parametrize("k", [3, 5, 7])
 def test_label_refuses_and_names_odd_polygons_odd_inner_vertices_and_moebius_strips(k):
     _, Q, polygon = mesh.polygon_rings(k, 2)
-    words = r"boundary loop through the vertices \[([\d, ]+)\]( \.\.\.)? has an odd sum"
+    words = r"boundary loop through the vertices ([\d-]+\d)(-\.\.\.)? has an odd sum"
     with pytest.raises(ValueError, match=words) as caught:
         mesh.label(Q)
-    assert set(named(caught)) <= set(polygon.tolist()) and len(named(caught)) == min(k, 6)
+    assert set(caught.value.vertices) == set(polygon)
+    assert re.search(words, str(caught.value))[1].count("-") == min(k, 6) - 1
     centre = 11 % (2 * k + 1)  # another number than 0
     with pytest.raises(ValueError, match=f"interior vertex {centre} has the odd valence {k}"):
         mesh.label((star(k) + 11) % (2 * k + 1))
     for faces in (k, k + 1):
+        Q = moebius_strip(faces)
         with pytest.raises(ValueError, match="not orientable: see the loop of faces") as caught:
-            mesh.label(moebius_strip(faces))
-        assert set(named(caught)) == set(range(faces))
+            mesh.label(Q)
+        assert sorted(caught.value.vertices) == sorted(Q[:, 0])
 
 
 def test_label_refuses_a_handle_that_glues_u_to_v_and_names_a_loop_of_faces():
@@ -347,7 +348,9 @@ def test_label_refuses_a_handle_that_glues_u_to_v_and_names_a_loop_of_faces():
     assert len(mesh.boundary_loops(Q)) == 1
     with pytest.raises(ValueError, match="u and v change places along the closed loop") as caught:
         mesh.label(Q)
-    loop, twin = named(caught), np.array(slow_twins(Q)).reshape(-1, 4)
+    loop = [Q[:, 0].tolist().index(k) for k in caught.value.vertices]
+    assert len(np.unique(Q[loop, 0])) == len(loop) and (np.bincount(Q[:, 0])[Q[loop, 0]] == 1).all()
+    twin = np.array(slow_twins(Q)).reshape(-1, 4)
     turns = 0
     for a, b in zip(loop, loop[1:] + loop[:1], strict=True):
         ((slot,),) = np.nonzero(twin[a] // 4 == b)
@@ -507,7 +510,7 @@ def test_quads_are_cut_along_the_shorter_diagonal_triangles_kept_and_other_faces
     for faces, words in [
         ([[0, 1, 2, 3, 4]], r"shape \(1, 5\): rows of three or four vertices"),
         ([[0, 1, 4]], "face 0 names vertex 4: there are only 4 vertices"),
-        ([[0, 1, 1]], "face 0 uses a vertex twice"),
+        ([[0, 1, 1]], "face 0-1-1 uses a vertex twice"),
     ]:
         with pytest.raises(ValueError, match=words):
             mesh.triangles(positions(1, 1), faces)

@@ -93,12 +93,12 @@ def test_a_square_with_a_square_hole_loses_no_triangle_and_fans_are_those_of_lib
             repair.require_single_fans(V, kept, mesh.opposites(kept))
             assert not pinched.size
         except ValueError as error:
-            assert f"vertex {pinched[0]}," in str(error)
+            assert f"vertex {pinched[0]} near" in str(error)
 
 
 def test_of_two_pinched_vertices_the_first_is_named_with_its_place():
     T = np.array([[0, 1, 2], [0, 3, 4], [5, 6, 7], [5, 8, 9]])
-    with pytest.raises(ValueError, match=r"vertex 0, near \(0, 1, 2\)"):
+    with pytest.raises(ValueError, match=r"vertex 0 near \(0, 1, 2\)"):
         repair.require_single_fans(np.arange(30).reshape(10, 3), T, mesh.opposites(T))
 
 
@@ -130,8 +130,8 @@ FLAT = changed(8, [1 / 6, 1 / 12, 0])
 NEVER = {  # no manifold
     "one-sided: see the loop of triangles": lambda: examples.moebius_strip(12, 1),
     "edge 0-1 belongs to more than two faces: not a manifold": wings,
-    r"vertex 0, near \(1, 0, 0\), form two fans: not a manifold": pinched,
-    r"triangle \[1, 7, 8\] near \(0, 0\.166667, 0\) has no area": lambda: FLAT,
+    r"vertex 0 near \(1, 0, 0\) form two fans: not a manifold": pinched,
+    r"triangle 1-7-8 near \(0, 0\.166667, 0\) has no area": lambda: FLAT,
 }
 TWO = [np.concatenate([X, X + shift]) for X, shift in zip(plate(), (5, 49), strict=True)]
 ELSE = {  # no disk and no ring
@@ -179,7 +179,7 @@ def test_merging_never_makes_a_surface_worse():
     V, F = wings()
     W, _, said = repair.manifold(*soup(V, F))  # three sheets that share an edge by its place
     assert len(W) == 9
-    assert said[0].startswith("duplicate vertices were not merged: edge 0-1 belongs")
+    assert said[0].startswith("duplicate vertices were not merged: the edge near (0, 0, 0) belongs")
     seam = plate()[0][[0, 1, 8, 7, 0, 8]], np.array([[0, 1, 2], [4, 5, 3]])
     assert repair.manifold(*seam)[2] == ["duplicate vertices merged: 2"]
     assert repair.manifold(*seam, merge=False)[2] == []

@@ -4,10 +4,13 @@ Every conformal map of a sheared grid is nearly an isogonal net for every pair o
 the optimisation that follows moves the vertices only a little along the surface."""
 
 from collections.abc import Callable
+from contextlib import contextmanager
+from functools import partial
 from typing import NamedTuple
 
 import igl
 import numpy as np
+from tqdm import tqdm
 
 from .. import parallelogram, reference, repair, solver
 from ..solver.run import timed
@@ -80,23 +83,24 @@ def cover(
     if not np.isfinite(direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
     seconds = {}
-    with timed(seconds, "check"):
+    stage = partial(_stage, seconds, progress)
+    with stage("check"):
         surface = repair.clean(V, F)
         goal = reference.mesh(surface.V, surface.F)
-    with timed(seconds, "flatten"):
+    with stage("flatten"):
         W, T, loops = surface[:3]
         while len(T) < COARSE:  # the map is linear on each triangle
             W, T = igl.upsample(W, T)
             loops = repair.topology(T)
         flat = flatten.flatten(W, T, loops, boundary)
-    with timed(seconds, "grid"):
+    with stage("grid"):
         domain = overlay.Domain(flat, W)
         layer = overlay.cover(domain, theta, theta0, count, size, direction)
     net, done, words = layer.V, False, "not optimised"
     if optimise:
         with timed(seconds, "optimise"):
             net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress, callback)
-    with timed(seconds, "report"):
+    with stage("report"):
         found = survey(net, layer.Q, theta, theta0, goal, flat)
     if done and found.distance_max > AWAY:
         words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
@@ -105,6 +109,14 @@ def cover(
         words += ": its triangles are coarser" if coarse else ": ask for more quads"
     found = found._replace(converged=done, message=words, winding=layer.winding)
     return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
+
+
+@contextmanager
+def _stage(seconds, progress, name):
+    """A stage of the way, named by a bar while it lasts."""
+    bar = tqdm(desc=name, bar_format="{desc} ... {elapsed}", leave=False, disable=not progress)
+    with timed(seconds, name), bar:
+        yield
 
 
 def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from .. import measure, mesh, reference, repair
+from .. import measure, mesh, reference
 from ..reference import Reference
 from .flatten import Flat
 
@@ -108,7 +108,7 @@ def survey(
         far, gaps = np.argmax(back), f" and the net has {holes} holes" if holes > 0 else ""
         notes.append(
             f"{100 - 100 * covered:.0f} % of the surface is left out{gaps}, farthest near "
-            f"{repair.place(goal.V[far])}, {100 * back[far] / goal.diagonal:.2g} % of its diagonal "
+            f"{mesh.place(goal.V[far])}, {100 * back[far] / goal.diagonal:.2g} % of its diagonal "
             f"from the net: {why}"
         )
     return net._replace(
@@ -139,7 +139,8 @@ def numbers(report: Report) -> dict:
     spreads = {k: {n: _shown(k, x) for n, x in getattr(r, k)._asdict().items()} for k in NAMES}
     plain["ratios"] = {k: spreads[k] for k in NAMES[:2]}
     plain["angles"] = {k: spreads[k] for k in NAMES[2:]}
-    return plain | {"deviation": float(np.degrees(r.max_deviation))}
+    degrees = {"corner": r.corner, "deviation": r.max_deviation}
+    return plain | {name: float(np.degrees(x)) for name, x in degrees.items()}
 
 
 def _shown(name, x):

@@ -91,7 +91,7 @@ def surface(path: str | Path, merge: bool = True) -> Surface:
 
     ValueError as in `read`, and for what is no surface."""
     V, F = read(path)
-    with named(path):
+    with named(path, V):
         V, F, repaired = repair.manifold(V, F, merge)
     if Path(path).suffix.lower() in SOUPS:
         repaired = ["corners of triangles at equal points were read as one vertex", *repaired]
@@ -114,7 +114,7 @@ def net(path: str | Path) -> Net:
         others = [np.array(face) for face in F if len(face) != 4]
     if not len(Q) or Q.shape[1] != 4:
         raise ValueError(f"{path} holds {'polygons' if others else 'triangles'}: quads are wanted")
-    with named(path):
+    with named(path, V):
         return Net(*mesh.check_arrays(V, Q), others)
 
 
@@ -125,7 +125,7 @@ def _checked(V, F):
         raise ValueError("the file has no faces")
     far = np.flatnonzero(~(np.abs(V) < TOO_FAR).all(axis=1))  # NaN too
     if far.size:
-        raise ValueError(f"vertex {far[0]} (from 0) has a coordinate that is no usable number")
+        raise mesh.Fault("vertex {} has a coordinate that is no usable number", far[0])
     sizes = {len(face) for face in F}
     if min(sizes) < 3:
         raise ValueError("a face has fewer than three corners")
@@ -142,10 +142,15 @@ def _check_indices(indices, count, what):
 
 
 @contextmanager
-def named(path: str | Path) -> Iterator[None]:
-    """ValueErrors inside get the file's name."""
+def named(path: str | Path, V: np.ndarray | None = None, counted: bool = True) -> Iterator[None]:
+    """ValueErrors inside get the file's name, and its own numbers of the vertices V, if any.
+
+    counted: whether vertices are still those of the file, so that their numbers say something."""
+    first = 1 if Path(path).suffix.lower() == ".obj" else 0
     try:
         yield
+    except mesh.Fault as error:
+        raise ValueError(f"{path}: {error.told(V, first if counted else None)}") from error
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 

@@ -254,7 +254,7 @@ class Log:
         self.history.append(step)
         if self.best is None or step.key < self.best[0].key:
             self.best = step, V, s
-        self.bar.set_description(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
+        self.bar.set_description_str(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
         self.bar.update()
         if kind != "start" and self.callback is not None:
             self.stopped = self.callback(step, V) is False
