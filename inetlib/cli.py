@@ -441,9 +441,9 @@ def _say(given, about, file, notes, **more):
         print(file or "not written")
         if "message" in known and known.get("converged", True):
             print(known["message"])
-        print(report.text(about))
         for note in notes:
             print("note:", note)
+        print(report.text(about))
 
 
 def _progress(given):

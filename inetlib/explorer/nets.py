@@ -129,8 +129,8 @@ def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
         names["callback"] = lambda step, V: callback(step, V, Q)
     net = names["net"] = eval(recipe.net.format_map(words), names)
     exec(recipe.take.format_map(words), names)
-    repairs = net.report.repairs if choice.kind == "cover" else ()
-    return names["V"], names["Q"], "; ".join([recipe.message.format(net), *repairs])
+    more = (*net.report.notes, *net.report.repairs) if choice.kind == "cover" else ()
+    return names["V"], names["Q"], "; ".join([recipe.message.format(net), *more])
 
 
 def code(choice: Choice, path: object = "surface.obj") -> str:
