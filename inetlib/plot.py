@@ -184,33 +184,31 @@ def cells(V, Q, white=False):
     return np.concatenate([V, board.V]), black, light
 
 
-def board(ax, view, V, Q, lines):
-    """A net in space: its inscribed parallelograms dark, the corners left light; see `scene`."""
-    points, black, light = cells(V, Q)
-    fill = [shade(points, black, DARK, depth=0.3), shade(points, light, depth=0.2)]
-    scene(ax, view, points, np.concatenate([black, light]), np.concatenate(fill), lines)
+def board(ax, view, V, Q, lines=(), surface=None, fill=DARK):
+    """A net in space: its inscribed parallelograms over a light surface; see `scene`.
+
+    surface: (V, faces) of a finer mesh of the surface, the net itself if None; fill: the colour of
+    the parallelograms, or one of each."""
+    quads, black = mesh.checkerboard(V, Q)[:2]
+    corners = quads[black].reshape(-1, 3)
+    apart = np.arange(len(corners)).reshape(-1, 4)  # of their own, to be flat
+    scene(ax, view, [(*(surface or (V, Q)), PALE), (corners, apart, fill)], lines)
 
 
-def scene(ax, view, V, faces, fill=None, lines=(), lift=0.02):
-    """A surface and curves on it, painted from the back to the front as vectors; the collection.
+def scene(ax, view, layers, lines=(), pixels=1000, lift=0.004):
+    """Shaded surfaces as a picture, and what is seen of the curves on them as vectors.
 
-    view: a `camera`; V: (n, 3); faces: (f, k); fill: a colour or one a face, default `shade`;
-    lines: (points (k, 3), colour, width) triples.  Their segments are sorted with the faces, and
-    lifted over those they lie on and by the fraction `lift` of the scene's depth."""
-    xy, near = view(V)
-    middle = near[faces].mean(axis=1)
-    lifted = lift * (np.ptp(near) or 1) + (middle - near[faces].min(axis=1)).max()
-    colours = to_rgba_array(shade(V, faces) if fill is None else fill)
-    colours = map(tuple, np.broadcast_to(colours, (len(faces), 4)))
-    closed = xy[np.concatenate([faces, faces[:, :1]], axis=1)]
-    pieces = [(p, colour, colour, 0.3) for p, colour in zip(closed, colours, strict=True)]
-    keys = [middle]
+    view: a `camera`; layers, pixels, lift: of `raster.render`; lines: (points (k, 3), colour,
+    width) triples.  Returns the `raster.Picture`."""
+    from . import raster
+
+    seen = raster.render(view, layers, pixels, lift)
+    ax.imshow(seen.image, extent=seen.extent, interpolation="hanning", zorder=1)
+    ax.update_datalim(np.reshape(seen.extent, (2, 2)).T)
+    styles = {}
     for points, colour, width in lines:
-        flat, close = view(points)
-        keys.append((close[1:] + close[:-1]) / 2 + lifted)
-        pieces += [(flat[k : k + 2], "none", colour, width) for k in range(len(flat) - 1)]
-    pieces = [pieces[k] for k in order(np.concatenate(keys))]
-    paths, inside, edges, widths = map(list, zip(*pieces, strict=True))
-    look = {"facecolors": inside, "edgecolors": edges, "linewidths": widths}
-    ax.update_datalim(np.concatenate(paths))
-    return _added(ax, PathCollection([*map(Path, paths)], capstyle="round", **look))
+        runs = raster.in_front(seen, view, points, len(layers))
+        styles.setdefault((width, colour), []).extend(view(run)[0] for run in runs)
+    for (width, colour), runs in styles.items():
+        curves(ax, runs, colour, width, zorder=2 + width / 100)
+    return seen

@@ -1,0 +1,210 @@
+"""A small z-buffer: smooth shaded surfaces as pictures, and what of a curve is in front of them.
+
+Pixels are decided in whole numbers (corners are rounded to a grid finer than a pixel), so that
+the last digits of coordinates, which differ between machines, do not show."""
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.colors import to_rgb
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter, maximum_filter, minimum_filter
+
+SUB = 64  # corners are rounded to 1/SUB of a pixel
+DEEP = 1 << 20  # steps of the depth
+CHUNK = 1 << 21  # pixels of boxes of triangles that are tried at once
+MARGIN = 5.37  # pixels around a scene; no whole number, lest its middle falls between two
+LIGHT = -0.35, 0.6, 0.72  # direction of the light: right, up, towards the viewer
+AMBIENT, DIFFUSE = 0.58, 0.45
+INSIDE = 0.88  # brightness of the back side
+HOLLOWS = (0.012, 0.3), (0.05, 0.25)  # radius and strength of the darkening in hollows
+CREASE = 0.025  # of the scene's size: a step in depth that gets a silhouette line
+LINE = 0.55  # brightness of these lines
+APART = 1.5  # pixels between the points of a curve that are tried
+
+
+class Buffer(NamedTuple):
+    """What is seen at each pixel (h, w), row 0 on top."""
+
+    depth: np.ndarray  # nearness to the viewer, -inf where nothing is seen
+    face: np.ndarray  # number of the triangle, -1 where nothing is seen
+    weights: np.ndarray  # (h, w, 3) barycentric coordinates in it
+
+
+def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buffer:
+    """The `Buffer` of triangles T (t, 3) with corners at xy (n, 2), in pixels from the lower left.
+
+    near (n,): nearness; shape: (h, w).  Of equally near triangles the first is seen."""
+    h, w = shape
+    x, y = np.round(xy * SUB).astype(np.int64).T
+    low, high = near.min(), near.max()
+    best = np.full(h * w, -1, dtype=np.int64)
+    corners = np.stack([x[T], y[T]], axis=2)
+    first = np.maximum(-((SUB // 2 - corners.min(axis=1)) // SUB), 0)  # columns, rows of centres
+    last = np.minimum((corners.max(axis=1) - SUB // 2) // SUB, [w - 1, h - 1])
+    size = np.maximum(last - first + 1, 0)
+    count = size.prod(axis=1)
+    ends = np.cumsum(count)
+    step = (near[T] - low) / ((high - low) or 1)
+    start = 0
+    while start < len(T):
+        stop = max(start + 1, int(np.searchsorted(ends, (ends[start - 1] if start else 0) + CHUNK)))
+        k = np.repeat(np.arange(start, stop), count[start:stop])
+        place = np.arange(len(k)) - np.repeat(ends[start:stop] - count[start:stop], count[start:stop])
+        place += ends[start - 1] if start else 0
+        row, column = np.divmod(place, size[k, 0])
+        row, column = row + first[k, 1], column + first[k, 0]
+        parts, area = _parts(corners, k, column, row)
+        inside = ((parts >= 0).all(axis=1) | (parts <= 0).all(axis=1)) & (area != 0)
+        k, row, column, parts, area = (a[inside] for a in (k, row, column, parts, area))
+        depth = np.sum(parts * step[k], axis=1) / area
+        key = np.round(DEEP * depth).astype(np.int64) * len(T) + (len(T) - 1 - k)
+        np.maximum.at(best, (h - 1 - row) * w + column, key)
+        start = stop
+    seen = np.flatnonzero(best >= 0)
+    face = np.full(h * w, -1)
+    face[seen] = len(T) - 1 - best[seen] % len(T)
+    row, column = np.divmod(seen, w)
+    parts, area = _parts(corners, face[seen], column, h - 1 - row)
+    weights = np.zeros((h * w, 3))
+    weights[seen] = parts / area[:, None]
+    depth = np.full(h * w, -np.inf)
+    depth[seen] = np.sum(weights[seen] * near[T[face[seen]]], axis=1)
+    return Buffer(depth.reshape(shape), face.reshape(shape), weights.reshape(h, w, 3))
+
+
+def _parts(corners, k, column, row):
+    """Twice the areas, with sign, that a pixel's centre makes with the sides, and their sum."""
+    p = np.stack([column, row], axis=1) * SUB + SUB // 2
+    a, b, c = (corners[k, i] - p for i in range(3))
+    parts = [u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] for u, v in ((b, c), (c, a), (a, b))]
+    return np.stack(parts, axis=1), sum(parts)
+
+
+def picture(seen: Buffer, normals: np.ndarray, colours: np.ndarray, T: np.ndarray) -> np.ndarray:
+    """RGBA (h, w, 4) in [0, 1] of what is seen.
+
+    normals (n, 3): unit normals at the vertices as the viewer has them (right, up, towards);
+    colours (t, 3) of the triangles."""
+    there = seen.face >= 0
+    face = seen.face[there]
+    normal = np.einsum("ki,kij->kj", seen.weights[there], normals[T[face]])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-9)[:, None]
+    front = normal[:, 2] >= 0
+    normal[~front] *= -1
+    light = np.asarray(LIGHT) / np.linalg.norm(LIGHT)
+    bright = AMBIENT + DIFFUSE * np.clip(normal @ light, 0, 1)
+    bright *= np.where(front, 1, INSIDE)
+    size = max(seen.depth.shape)
+    image = np.zeros((*there.shape, 4))
+    image[there, :3] = colours[face] * bright[:, None]
+    image[there, 3] = 1
+    image[..., :3] *= _hollows(seen.depth, there, size)[..., None]
+    image[_creases(seen.depth, there, size), :3] *= LINE
+    return image
+
+
+def _hollows(depth, there, size):
+    """Brightness (h, w) of ambient light: less where what is around is nearer to the viewer."""
+    bright = np.ones(depth.shape)
+    solid = np.where(there, depth, 0.0)
+    for radius, strength in HOLLOWS:
+        reach = radius * size
+        weight = np.maximum(gaussian_filter(there.astype(float), reach), 1e-6)
+        above = (gaussian_filter(solid, reach) / weight - solid) / reach
+        bright *= 1 - 0.25 * strength * np.clip(above, 0, 1)
+    return bright
+
+
+def _creases(depth, there, size):
+    """Where a surface ends in front of another one, or of nothing: boolean (h, w)."""
+    lowest = minimum_filter(np.where(there, depth, -np.inf), 3, mode="constant", cval=-np.inf)
+    return there & (depth - lowest > CREASE * size)
+
+
+class Picture(NamedTuple):
+    """A scene made by `render`."""
+
+    image: np.ndarray  # RGBA (h, w, 4) in [0, 1]
+    extent: tuple  # left, right, bottom, top in the camera's coordinates
+    seen: Buffer
+    scale: float  # pixels in a unit of length
+    lift: float  # of a layer over the one below, in pixels
+
+
+def render(view: Callable, layers: Sequence, pixels: int = 1000, lift: float = 0.004) -> Picture:
+    """The `Picture` of surfaces.
+
+    view: a `plot.camera`; layers: (V (n, 3), faces (f, 3 or 4), a colour or one a face), shaded
+    smoothly where faces share vertices; pixels: of the longer side.  Later layers lie over the
+    earlier ones by `lift`, a part of the longer side."""
+    points, faces, normals, colours, over = [], [], [], [], []
+    for k, (V, F, colour) in enumerate(layers):
+        T = np.stack([F[:, [0, i, i + 1]] for i in range(1, F.shape[1] - 1)], axis=1).reshape(-1, 3)
+        faces.append(T + sum(map(len, points)))
+        points.append(np.asarray(V, dtype=float))
+        normals.append(_normals(V, T))
+        colour = np.atleast_2d(to_rgb(colour) if isinstance(colour, str) else colour)[:, :3]
+        colours.append(np.repeat(np.broadcast_to(colour, (len(F), 3)), len(T) // len(F), axis=0))
+        over.append(np.full(len(V), k))
+    points, faces, normals, colours, over = map(
+        np.concatenate, (points, faces, normals, colours, over)
+    )
+    (right, up), towards = view(np.eye(3))[0].T, view(np.eye(3))[1]
+    xy, near = view(points)
+    low, high = xy.min(axis=0), xy.max(axis=0)
+    size = (high - low).max() or 1.0
+    scale = pixels / size
+    w, h = np.ceil((high - low) * scale + 2 * MARGIN).astype(int).tolist()
+    near = near * scale + over * lift * pixels
+    seen = buffer((xy - low) * scale + MARGIN, near, faces, (h, w))
+    image = picture(seen, normals @ np.column_stack([right, up, towards]), colours, faces)
+    left, bottom = low - MARGIN / scale
+    return Picture(image, (left, left + w / scale, bottom, bottom + h / scale), seen, scale, lift * pixels)
+
+
+def _normals(V, T):
+    """Unit normals at the vertices, means of those of the triangles by area."""
+    V = np.asarray(V, dtype=float)
+    normal = np.cross(V[T[:, 1]] - V[T[:, 0]], V[T[:, 2]] - V[T[:, 0]])
+    total = [np.bincount(T.ravel(), np.repeat(x, 3), len(V)) for x in normal.T]
+    total = np.stack(total, axis=1)
+    return total / np.maximum(np.linalg.norm(total, axis=1), 1e-300)[:, None]
+
+
+def in_front(scene: Picture, view: Callable, line: ArrayLike, layers: int = 1) -> list[np.ndarray]:
+    """The parts of a polyline (k, 3) that are seen, in space: a list of (., 3).
+
+    layers: how many of the scene's layers it may lie beneath."""
+    line = np.asarray(line, dtype=float)
+    xy = (view(line)[0] - [scene.extent[0], scene.extent[2]]) * scene.scale
+    way = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
+    tried = np.linspace(0, way[-1], max(2, int(way[-1] / APART) + 1))
+    points = _at(line, way, tried)
+    seen = visible(scene, view, points, layers)
+    runs = np.split(np.arange(len(tried)), np.flatnonzero(np.diff(seen)) + 1)
+    found = []
+    for run in runs:
+        if seen[run[0]] and len(run) > 1:
+            start, end = tried[run[[0, -1]]]
+            inner = way[(way > start) & (way < end)]
+            found.append(_at(line, way, np.concatenate([[start], inner, [end]])))
+    return found
+
+
+def _at(line, way, s):
+    return np.stack([np.interp(s, way, x) for x in line.T], axis=1)
+
+
+def visible(scene: Picture, view: Callable, points: ArrayLike, layers: int = 1) -> np.ndarray:
+    """Whether each of the points (k, 3) on the surfaces is seen: boolean (k,)."""
+    xy, near = view(points)
+    depth, (h, w) = scene.seen.depth, scene.seen.depth.shape
+    column, row = np.floor((xy - [scene.extent[0], scene.extent[2]]) * scene.scale).astype(int).T
+    inside = (column >= 0) & (column < w) & (row >= 0) & (row < h)
+    at = h - 1 - np.clip(row, 0, h - 1), np.clip(column, 0, w - 1)
+    solid = np.where(np.isfinite(depth), depth, near.min() * scene.scale)
+    slope = np.minimum(maximum_filter(solid, 3) - minimum_filter(solid, 3), 2 * scene.lift)
+    slack = (layers - 1 + 0.75) * scene.lift + slope[at]
+    return ~inside | (near * scene.scale >= depth[at] - slack)
