@@ -1,4 +1,4 @@
-"""Drawing with matplotlib: plane figures, and 3D by projected, depth-sorted polygons, no OpenGL.
+"""Drawing with matplotlib: plane figures, and shaded surfaces with curves on them, no OpenGL.
 
 One colour a family (u, v, d1, d2) through all figures, of different lightness."""
 
@@ -6,18 +6,15 @@ from importlib.resources import files
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import LineCollection, PathCollection, PolyCollection
-from matplotlib.colors import to_rgb, to_rgba_array
-from matplotlib.path import Path
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.patheffects import withStroke
 
-from . import mesh, ties
+from . import mesh, raster
 
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 DARK = "#6f8fbf"  # inscribed parallelograms in space
 DEGREE = float(np.pi / 180)
-ROUNDING = 1e-12  # of the size of numbers: closer ones count as the same on every machine
 
 
 def use_style():
@@ -148,60 +145,27 @@ def camera(azimuth: float, elevation: float):
     return project
 
 
-def shade(V, faces, colour=PALE, light=(0.3, -0.5, 0.8), depth=0.35) -> np.ndarray:
-    """RGB (f, 3) of faces (f, 3 or 4): darker where turned from the light, both sides alike."""
-    corners = np.asarray(V)[faces]
-    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = normal / np.where(length > 0, length, 1)
-    light = np.asarray(light) / np.linalg.norm(light)
-    return np.array(to_rgb(colour)) * (1 - depth * (1 - np.abs(normal @ light)))[:, None]
-
-
-def order(keys) -> np.ndarray:
-    """The places of the keys (k,) from the smallest to the largest; ties keep their order."""
-    keys = np.asarray(keys, dtype=float)
-    close = ties.TIE * np.ptp(keys) + ROUNDING * np.abs(keys).max()
-    return np.argsort(ties.ranks(keys, close), kind="stable")
-
-
 def families(V, Q, widths):
     """Lines for `scene`: the polylines of each family of {family: width} in its colour."""
     found = mesh.polylines(Q)._asdict()
     return [(V[line], COLOURS[name], w) for name, w in widths.items() for line in found[name]]
 
 
-def cells(V, Q, white=False):
-    """(points, black, light): a net cut along its inscribed parallelograms, faces (., 4).
+def board(ax, view, V, Q, lines=(), more=(), fill=DARK):
+    """A net in space: its inscribed parallelograms over the light surface; see `scene`.
 
-    light: the corners left, or with `white` the white quads, and the corners left at the rim."""
-    board = mesh.checkerboard(V, Q)
-    black = board.black + len(V)
-    corners = np.stack([np.roll(black, 1, axis=1), Q, black, black], axis=2)
-    light = corners.swapaxes(0, 1).reshape(-1, 4)
-    if white:
-        light = np.concatenate([board.white + len(V), corners[np.bincount(Q.ravel())[Q] < 4]])
-    return np.concatenate([V, board.V]), black, light
-
-
-def board(ax, view, V, Q, lines=(), surface=None, fill=DARK):
-    """A net in space: its inscribed parallelograms over a light surface; see `scene`.
-
-    surface: (V, faces) of a finer mesh of the surface, the net itself if None; fill: the colour of
-    the parallelograms, or one of each."""
+    more: further layers below; fill: the colour of the parallelograms, or one of each."""
     quads, black = mesh.checkerboard(V, Q)[:2]
     corners = quads[black].reshape(-1, 3)
-    apart = np.arange(len(corners)).reshape(-1, 4)  # of their own, to be flat
-    scene(ax, view, [(*(surface or (V, Q)), PALE), (corners, apart, fill)], lines)
+    apart = np.arange(len(corners)).reshape(-1, 4)  # with corners of their own, to be flat
+    return scene(ax, view, [(V, Q, PALE), *more, (corners, apart, fill)], lines)
 
 
-def scene(ax, view, layers, lines=(), pixels=1000, lift=0.004):
+def scene(ax, view, layers, lines=(), pixels=700, lift=0.003):
     """Shaded surfaces as a picture, and what is seen of the curves on them as vectors.
 
     view: a `camera`; layers, pixels, lift: of `raster.render`; lines: (points (k, 3), colour,
     width) triples.  Returns the `raster.Picture`."""
-    from . import raster
-
     seen = raster.render(view, layers, pixels, lift)
     ax.imshow(seen.image, extent=seen.extent, interpolation="hanning", zorder=1)
     ax.update_datalim(np.reshape(seen.extent, (2, 2)).T)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import ArrayLike
-from scipy.ndimage import gaussian_filter, maximum_filter, minimum_filter
+from scipy.ndimage import minimum_filter, uniform_filter
 
 SUB = 64  # corners are rounded to 1/SUB of a pixel
 DEEP = 1 << 20  # steps of the depth
@@ -44,21 +44,28 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
     first = np.maximum(-((SUB // 2 - corners.min(axis=1)) // SUB), 0)  # columns, rows of centres
     last = np.minimum((corners.max(axis=1) - SUB // 2) // SUB, [w - 1, h - 1])
     size = np.maximum(last - first + 1, 0)
-    count = size.prod(axis=1)
+    sides = _sides(corners)
+    area = sides[2].sum(axis=1)
+    sides *= np.sign(area)[:, None]  # all turn alike, and what has no area is not seen
+    sides[2][area == 0] = -1
+    area = np.abs(area)
+    count = np.where(area > 0, size.prod(axis=1), 0)
     ends = np.cumsum(count)
     step = (near[T] - low) / ((high - low) or 1)
     start = 0
     while start < len(T):
         stop = max(start + 1, int(np.searchsorted(ends, (ends[start - 1] if start else 0) + CHUNK)))
         k = np.repeat(np.arange(start, stop), count[start:stop])
-        place = np.arange(len(k)) - np.repeat(ends[start:stop] - count[start:stop], count[start:stop])
+        place = np.arange(len(k)) - np.repeat(
+            ends[start:stop] - count[start:stop], count[start:stop]
+        )
         place += ends[start - 1] if start else 0
         row, column = np.divmod(place, size[k, 0])
         row, column = row + first[k, 1], column + first[k, 0]
-        parts, area = _parts(corners, k, column, row)
-        inside = ((parts >= 0).all(axis=1) | (parts <= 0).all(axis=1)) & (area != 0)
-        k, row, column, parts, area = (a[inside] for a in (k, row, column, parts, area))
-        depth = np.sum(parts * step[k], axis=1) / area
+        parts = _parts(sides, k, column, row)
+        inside = (parts >= 0).all(axis=1)
+        k, row, column, parts = (a[inside] for a in (k, row, column, parts))
+        depth = np.einsum("ij,ij->i", parts, step[k]) / area[k]
         key = np.round(DEEP * depth).astype(np.int64) * len(T) + (len(T) - 1 - k)
         np.maximum.at(best, (h - 1 - row) * w + column, key)
         start = stop
@@ -66,20 +73,27 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
     face = np.full(h * w, -1)
     face[seen] = len(T) - 1 - best[seen] % len(T)
     row, column = np.divmod(seen, w)
-    parts, area = _parts(corners, face[seen], column, h - 1 - row)
+    parts = _parts(sides, face[seen], column, h - 1 - row)
     weights = np.zeros((h * w, 3))
-    weights[seen] = parts / area[:, None]
+    weights[seen] = parts / area[face[seen], None]
     depth = np.full(h * w, -np.inf)
     depth[seen] = np.sum(weights[seen] * near[T[face[seen]]], axis=1)
     return Buffer(depth.reshape(shape), face.reshape(shape), weights.reshape(h, w, 3))
 
 
-def _parts(corners, k, column, row):
-    """Twice the areas, with sign, that a pixel's centre makes with the sides, and their sum."""
-    p = np.stack([column, row], axis=1) * SUB + SUB // 2
-    a, b, c = (corners[k, i] - p for i in range(3))
-    parts = [u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] for u, v in ((b, c), (c, a), (a, b))]
-    return np.stack(parts, axis=1), sum(parts)
+def _sides(corners):
+    """Coefficients (3, t, 3) of `_parts`, in x, in y, and constant, for the three sides."""
+    (x, y), (u, v) = (
+        np.moveaxis(corners[:, [1, 2, 0]], 2, 0),
+        np.moveaxis(corners[:, [2, 0, 1]], 2, 0),
+    )
+    return np.stack([y - v, u - x, x * v - y * u])
+
+
+def _parts(sides, k, column, row):
+    """Twice the areas (., 3), with sign, that a pixel's centre makes with the sides of k."""
+    x, y = (n * SUB + SUB // 2 for n in (column, row))
+    return sides[0][k] * x[:, None] + sides[1][k] * y[:, None] + sides[2][k]
 
 
 def picture(seen: Buffer, normals: np.ndarray, colours: np.ndarray, T: np.ndarray) -> np.ndarray:
@@ -111,16 +125,23 @@ def _hollows(depth, there, size):
     solid = np.where(there, depth, 0.0)
     for radius, strength in HOLLOWS:
         reach = radius * size
-        weight = np.maximum(gaussian_filter(there.astype(float), reach), 1e-6)
-        above = (gaussian_filter(solid, reach) / weight - solid) / reach
-        bright *= 1 - 0.25 * strength * np.clip(above, 0, 1)
+        weight, mean = (_blurred(x, reach) for x in (there.astype(float), solid))
+        above = (mean / np.maximum(weight, 1e-6) - solid) / reach
+        bright *= 1 - strength * np.clip(above, 0, 1)
     return bright
+
+
+def _blurred(x, reach):
+    """Means over squares, twice, so that these leave no trace."""
+    width = 2 * int(reach) + 1
+    return uniform_filter(uniform_filter(x, width, mode="constant"), width, mode="constant")
 
 
 def _creases(depth, there, size):
     """Where a surface ends in front of another one, or of nothing: boolean (h, w)."""
-    lowest = minimum_filter(np.where(there, depth, -np.inf), 3, mode="constant", cval=-np.inf)
-    return there & (depth - lowest > CREASE * size)
+    nothing = depth[there].min(initial=0) - size
+    solid = np.where(there, depth, nothing)
+    return solid - minimum_filter(solid, 3, mode="constant", cval=nothing) > CREASE * size
 
 
 class Picture(NamedTuple):
@@ -129,48 +150,65 @@ class Picture(NamedTuple):
     image: np.ndarray  # RGBA (h, w, 4) in [0, 1]
     extent: tuple  # left, right, bottom, top in the camera's coordinates
     seen: Buffer
+    planes: np.ndarray  # (t, 3): depth of the triangles at x, y: their product with (x, y, 1)
     scale: float  # pixels in a unit of length
     lift: float  # of a layer over the one below, in pixels
 
 
-def render(view: Callable, layers: Sequence, pixels: int = 1000, lift: float = 0.004) -> Picture:
+def render(view: Callable, layers: Sequence, pixels: int = 700, lift: float = 0.003) -> Picture:
     """The `Picture` of surfaces.
 
     view: a `plot.camera`; layers: (V (n, 3), faces (f, 3 or 4), a colour or one a face), shaded
     smoothly where faces share vertices; pixels: of the longer side.  Later layers lie over the
-    earlier ones by `lift`, a part of the longer side."""
-    points, faces, normals, colours, over = [], [], [], [], []
+    earlier ones by `lift`, a part of the longer side, and by what quads are bent."""
+    points, faces, normals, colours, over, bent = [], [], [], [], [], 0.0
     for k, (V, F, colour) in enumerate(layers):
-        T = np.stack([F[:, [0, i, i + 1]] for i in range(1, F.shape[1] - 1)], axis=1).reshape(-1, 3)
-        faces.append(T + sum(map(len, points)))
-        points.append(np.asarray(V, dtype=float))
-        normals.append(_normals(V, T))
+        V, sides = np.asarray(V, dtype=float), F.shape[1]
+        normal = np.cross(V[F[:, 2]] - V[F[:, 0]], V[F[:, -1]] - V[F[:, 1]])
+        if sides == 4:
+            area = np.maximum(np.linalg.norm(normal, axis=1), 1e-300)
+            apart = np.abs(np.einsum("ij,ij->i", V[F[:, 1]] - V[F[:, 0]], normal)) / area
+            bent = max(bent, 1.35 * apart.max())
+        around = [np.bincount(F.ravel(), np.repeat(x, sides), len(V)) for x in normal.T]
+        around = np.stack(around, axis=1)
+        length = np.maximum(np.linalg.norm(around, axis=1), 1e-300)
+        T = np.stack([F[:, [0, i, i + 1]] for i in range(1, sides - 1)], axis=1).reshape(-1, 3)
         colour = np.atleast_2d(to_rgb(colour) if isinstance(colour, str) else colour)[:, :3]
-        colours.append(np.repeat(np.broadcast_to(colour, (len(F), 3)), len(T) // len(F), axis=0))
+        faces.append(T + sum(map(len, points)))
+        points.append(V)
+        normals.append(around / length[:, None])
+        colours.append(np.repeat(np.broadcast_to(colour, (len(F), 3)), sides - 2, axis=0))
         over.append(np.full(len(V), k))
-    points, faces, normals, colours, over = map(
-        np.concatenate, (points, faces, normals, colours, over)
-    )
+    every = map(np.concatenate, (points, faces, normals, colours, over))
+    return _rendered(view, pixels, lift, bent, *every)
+
+
+def _rendered(view, pixels, lift, bent, V, T, normals, colours, over):
     (right, up), towards = view(np.eye(3))[0].T, view(np.eye(3))[1]
-    xy, near = view(points)
+    xy, near = view(V)
     low, high = xy.min(axis=0), xy.max(axis=0)
     size = (high - low).max() or 1.0
     scale = pixels / size
+    lift = lift * pixels + bent * scale
     w, h = np.ceil((high - low) * scale + 2 * MARGIN).astype(int).tolist()
-    near = near * scale + over * lift * pixels
-    seen = buffer((xy - low) * scale + MARGIN, near, faces, (h, w))
-    image = picture(seen, normals @ np.column_stack([right, up, towards]), colours, faces)
+    xy = (xy - low) * scale + MARGIN
+    near = near * scale + over * lift
+    seen = buffer(xy, near, T, (h, w))
+    image = picture(seen, normals @ np.column_stack([right, up, towards]), colours, T)
     left, bottom = low - MARGIN / scale
-    return Picture(image, (left, left + w / scale, bottom, bottom + h / scale), seen, scale, lift * pixels)
+    extent = left, left + w / scale, bottom, bottom + h / scale
+    return Picture(image, extent, seen, _planes(xy, near, T), scale, lift)
 
 
-def _normals(V, T):
-    """Unit normals at the vertices, means of those of the triangles by area."""
-    V = np.asarray(V, dtype=float)
-    normal = np.cross(V[T[:, 1]] - V[T[:, 0]], V[T[:, 2]] - V[T[:, 0]])
-    total = [np.bincount(T.ravel(), np.repeat(x, 3), len(V)) for x in normal.T]
-    total = np.stack(total, axis=1)
-    return total / np.maximum(np.linalg.norm(total, axis=1), 1e-300)[:, None]
+def _planes(xy, near, T):
+    """Coefficients (t, 3) of the depth of each triangle, in x, in y, and constant."""
+    (x, y), z = np.moveaxis(xy[T], 2, 0), near[T]
+    one, two = ([c[:, i] - c[:, 0] for c in (x, y, z)] for i in (1, 2))
+    area = one[0] * two[1] - one[1] * two[0]
+    area = np.where(np.abs(area) > 1e-9, area, np.inf)
+    by_x = (one[2] * two[1] - two[2] * one[1]) / area
+    by_y = (two[2] * one[0] - one[2] * two[0]) / area
+    return np.stack([by_x, by_y, z[:, 0] - by_x * x[:, 0] - by_y * y[:, 0]], axis=1)
 
 
 def in_front(scene: Picture, view: Callable, line: ArrayLike, layers: int = 1) -> list[np.ndarray]:
@@ -201,10 +239,14 @@ def visible(scene: Picture, view: Callable, points: ArrayLike, layers: int = 1) 
     """Whether each of the points (k, 3) on the surfaces is seen: boolean (k,)."""
     xy, near = view(points)
     depth, (h, w) = scene.seen.depth, scene.seen.depth.shape
-    column, row = np.floor((xy - [scene.extent[0], scene.extent[2]]) * scene.scale).astype(int).T
+    xy = (xy - [scene.extent[0], scene.extent[2]]) * scene.scale
+    column, row = np.floor(xy).astype(int).T
     inside = (column >= 0) & (column < w) & (row >= 0) & (row < h)
     at = h - 1 - np.clip(row, 0, h - 1), np.clip(column, 0, w - 1)
-    solid = np.where(np.isfinite(depth), depth, near.min() * scene.scale)
-    slope = np.minimum(maximum_filter(solid, 3) - minimum_filter(solid, 3), 2 * scene.lift)
-    slack = (layers - 1 + 0.75) * scene.lift + slope[at]
-    return ~inside | (near * scene.scale >= depth[at] - slack)
+    # The depth is known at the middle of the pixel; what is seen there goes on as a plane.
+    most, exact = 4 * scene.lift, depth[at]
+    seen = np.isfinite(exact)
+    plane = scene.planes[scene.seen.face[at][seen]]
+    there = np.einsum("ij,ij->i", plane, np.column_stack([xy[seen], np.ones(seen.sum())]))
+    exact[seen] += np.clip(there - exact[seen], -most, most)
+    return ~inside | (near * scene.scale >= exact - (layers - 0.25) * scene.lift)

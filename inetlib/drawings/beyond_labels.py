@@ -103,7 +103,7 @@ def _small(ax, V, Q, polygon):
     else:
         points = view(V)[0]
         lines = [(V[pair], plot.COLOURS[k], 0.9) for k in "uv" for pair in edges[k]]
-        plot.scene(ax, view, V, Q, "#e3e7ee", lines, lift=0.01)
+        plot.scene(ax, view, [(V, Q, "#e3e7ee")], lines, lift=0.01)
     low, high = points.min(axis=0), points.max(axis=0)
     half = 0.53 * (high - low).max() * np.array([-1, 1])
     ax.set(xlim=(low + high)[0] / 2 + half, ylim=(low + high)[1] / 2 + half)

@@ -101,7 +101,7 @@ def _square(ax, n):
 def _web(ax, view, surface, n):
     lines = [(surface(line), COLOURS[name], 0.9) for name, line in _families(n, 25)]
     V, Q = _mesh(surface, 3 * n)
-    plot.scene(ax, view, V, Q, plot.shade(V, Q, depth=0.25), lines)
+    plot.scene(ax, view, [(V, Q, plot.PALE)], lines)
     flat = {}
     for name, s in STEPS.items():
         step = 1e-5 * np.array(s)
@@ -122,9 +122,11 @@ def _grid(ax, n):
 
 def _faces(ax, view, V, Q):
     middle = len(Q) // 2
-    fill = plot.shade(V, Q, depth=0.25)
+    fill = np.tile(to_rgb(plot.PALE), (len(Q), 1))
     fill[middle] = to_rgb(plot.FILL)
-    plot.scene(ax, view, V, Q, fill, plot.families(V, Q, dict.fromkeys(COLOURS, 1.1)))
+    lines = plot.families(V, Q, dict.fromkeys(COLOURS, 1.1))
+    apart = np.arange(Q.size).reshape(-1, 4)
+    plot.scene(ax, view, [(V[Q].reshape(-1, 3), apart, fill)], lines)
     corners = view(V[Q[middle]])[0]
     ax.plot(*corners.T, "o", color=plot.INK, ms=3, zorder=6)
     for k, turn in enumerate((1, 1, np.exp(-1.2j), np.exp(1.2j))):  # beside the ends of d1, d2

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .. import conformal, developable, plot
+from .. import conformal, developable, mesh, plot
 from ..plot import DEGREE
 from . import drawn, sampled
 
@@ -11,7 +11,6 @@ PANELS = [[name for name, count in row.items() for _ in range(count)] for row in
 HIGH = 8.2  # columns are as wide as a panel is high
 GEODESIC = ((0, 0, 0), (0.3, -0.8, 0.1), (0.6, -0.8, 0.3), (0.9, 0, 0.4))
 EDITED = ((0, 0, 0), (0.1, -1, -0.1), (0.8, -1, 0.6), (0.9, 0, 0.4))
-LIGHT = (-0.3, -1, 0.5)
 TITLES = {"A": "$k=0$: sheared grid in the plane", "B": "$k=1/4$", "C": "$k=1/2$", "D": "$k=3/4$"}
 TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "Bezier geodesic", "H": "moved points"}
 
@@ -90,24 +89,25 @@ def _along(z, points):
 def _sheet(ax, view, bend, z):
     """Black quads dark, the rest light, u- and v-curves, and the diagonal of the net."""
     V, Q = conformal.quads(z)
-    flat, black, light = plot.cells(V, Q, white=True)
-    points = bend(flat[:, 0] + 1j * flat[:, 1])
-    shades = [plot.shade(points, black, plot.DARK, LIGHT, 0.4)]
-    shades += [plot.shade(points, light, light=LIGHT, depth=0.25)]
+    fine, F = conformal.quads(_finer(_finer(z).T).T)
+    black = mesh.checkerboard(V, Q)
+    quads = bend(black.V[:, 0] + 1j * black.V[:, 1])[black.black].reshape(-1, 3)
     lines = [
-        (bend(_halves(line)), plot.COLOURS[name], 0.7)
-        for name, family in (("u", z.T), ("v", z))
+        (bend(line), plot.COLOURS[name], 0.7)
+        for name, family in (("u", _finer(z).T), ("v", _finer(z.T).T))
         for line in family
     ]
-    lift = 0.1 * view(np.eye(3))[1]  # in front, at the same place of the picture
-    diagonal = bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z)))
-    lines.append((diagonal + lift, plot.INK, 2.2))
-    plot.scene(ax, view, points, np.concatenate([black, light]), np.concatenate(shades), lines)
+    lines.append((bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z))), plot.INK, 2.2))
+    surface = bend(fine[:, 0] + 1j * fine[:, 1]), F, plot.PALE
+    apart = np.arange(len(quads)).reshape(-1, 4)
+    plot.scene(ax, view, [surface, (quads, apart, plot.DARK)], lines)
 
 
-def _halves(line):
-    """A polyline with the midpoints of its edges."""
-    return np.insert(line, np.arange(1, len(line)), (line[1:] + line[:-1]) / 2)
+def _finer(z, parts=6):
+    """The rows of a grid, and more between them."""
+    s = np.arange((len(z) - 1) * parts + 1) / parts
+    k = np.minimum(s.astype(int), len(z) - 2)
+    return z[k] + (s - k)[:, None] * (z[k + 1] - z[k])
 
 
 def _same_scale(axes):

@@ -8,7 +8,6 @@ from .. import conformal, measure, mesh, moebius, plot, reference, solver, surfa
 from ..plot import DEGREE
 from ..solver.problem import Weights
 from . import darts, drawn, isothermal, sampled
-from .lighter import lighter
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
 ROWS, COLUMNS, TOP = 8, 20, 4  # of each net; its upper edge v, in steps
@@ -143,8 +142,7 @@ def _panel(ax, panel, V, Q, curve):
     view = plot.camera(*np.radians((CAMERAS if column < 3 else IMAGE_CAMERAS)[letter]))
     lines = plot.families(V, Q, {"v": 0.6, "u": 0.6})
     lines.append((curve, plot.COLOURS["u"], 2.2))
-    scene = plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
-    lighter(scene).set_clip_on(False)  # a smaller file
+    plot.board(ax, view, V, Q, lines)
     plot.panel(ax, f"{letter}_{column}", NAMES[letter] if column == 1 else "")
     if letter == "A":
         title = TITLES[column].replace("*", "\N{DEGREE SIGN}")

@@ -35,7 +35,7 @@ def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
 def _sphere(ax, view, V, Q, curve):
     lines = plot.families(V, Q, {"v": 0.7, "u": 0.7})
     lines.append((curve, plot.COLOURS["u"], 2.6))
-    plot.scene(ax, view, V, Q, plot.shade(V, Q), lines)
+    plot.board(ax, view, V, Q, lines)
     plot.curves(ax, [CIRCLE], plot.GREY, 0.7, zorder=0)
     north = view(np.array([0, 0, 1.0]))[0]
     ax.plot(*north, "o", color=plot.INK, ms=4, zorder=7)

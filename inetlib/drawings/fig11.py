@@ -1,6 +1,7 @@
 """Fig. 11: loxodromes and parallels on a surface of revolution, and their isogonal 4-web."""
 
 import numpy as np
+from matplotlib.colors import to_rgb
 
 from .. import loxodrome, measure, parallelogram, plot, surfaces
 from ..plot import COLOURS, DEGREE
@@ -42,17 +43,12 @@ def draw(theta=ANGLES[0], theta0=ANGLES[1], m=18, profile=None, azimuth=VIEW[0],
 
 def _strip(ax, view, net):
     """The first strip and two parallels; the corners A, B, C, D of its first quad; theta0."""
-    front = revolution.facing(view, net.V, net.Q)
-    Q, first = net.Q[front], np.arange(len(net.Q))[front] < net.rows
-    fill = plot.shade(net.V, Q, depth=0.2)
-    fill[first] = plot.shade(net.V, Q[first], STRIP, depth=0.2)
-    lines = revolution.lines(net.V, Q[first], "u", 0.7)
-    lines += revolution.lines(net.V, Q[first], "v", 1.8)
-    up = net.rows // 3
-    for row, width in ((0, 1.8), (up, 0.9)):
-        level = Q[Q[:, 1] % (net.rows + 1) == row]
-        lines += [(s, COLOURS["u"], width) for s in net.V[level[:, 1:3]]]
-    revolution.paint(ax, view, net, (net.V, Q), fill, lines)
+    first, up = net.Q[: net.rows], net.rows // 3
+    fill = np.tile(to_rgb(plot.PALE), (len(net.Q), 1))
+    fill[: net.rows] = to_rgb(STRIP)
+    lines = revolution.edges(net.V, first, "u", 0.7) + revolution.edges(net.V, first, "v", 1.8)
+    lines += [(net.families.u[row], COLOURS["u"], w) for row, w in ((0, 1.8), (up, 0.9), (-1, 0.9))]
+    plot.scene(ax, view, [(net.V, net.Q, fill)], lines)
     places = {"C": (-0.09, 0.06), "A": (-0.05, -0.12), "B": (0.07, -0.12), "D": (0.1, 0.05)}
     corners = view(net.V[net.Q[0]])[0]
     for (name, shift), point in zip(places.items(), corners, strict=True):

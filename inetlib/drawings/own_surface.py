@@ -30,12 +30,13 @@ def panels(V, Q, curves, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     for name, numbers in values.items():
         mappable = ScalarMappable(Normalize(numbers.min(), numbers.max()), "cividis")
         fill = mappable.to_rgba(numbers)[:, :3]
-        plot.scene(axes[name], view, V, Q, fill).set_clip_on(False)
+        apart = np.arange(Q.size).reshape(-1, 4)
+        plot.scene(axes[name], view, [(V[Q].reshape(-1, 3), apart, fill)])
         bar = axes[name].inset_axes([0.1, -0.12, 0.8, 0.05])
         figure.colorbar(mappable, cax=bar, orientation="horizontal")
     axes["size"].set_title("size, over the mean", loc="left")
     axes["planarity"].set_title("distance of the diagonals", loc="left")
     lines = [(copy, plot.INK, 0.5) for curve in curves for copy in curve]
-    plot.scene(axes["motif"], view, V, Q, lines=lines).set_clip_on(False)
+    plot.scene(axes["motif"], view, [(V, Q, plot.PALE)], lines)
     axes["motif"].set_title("a motif in every quad", loc="left")
     return figure

@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LinearSegmentedColormap, to_rgb
+from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.ticker import MaxNLocator
 
 from .. import measure, mesh, plot, ties
@@ -13,7 +13,6 @@ from ..solver.problem import Weights
 WEIGHTS = Weights(fairness=0.0005, closeness=0.001, approximation=0.001, boundary=0.0001)
 EXACT = "#7b9bcb"  # parallelograms without a deviation
 DEVIATION = LinearSegmentedColormap.from_list("deviation", [EXACT, "#a8506a", "#3d0a1e"])
-LIGHT = (-0.45, -0.5, 0.75)
 
 
 def domed(V, dome, wave, waves):
@@ -41,22 +40,13 @@ def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=()):
 
     view: a `plot.camera`; colours: one, or RGB for each quad; lines: as for `plot.scene`;
     polygons: (corners (k, 3), colour) of further faces."""
-    points, black, pale = plot.cells(V, Q, white=True)
-    fill = [_shaded(points, black, colours), _shaded(points, pale, "#f0f2f5", 0.3)]
-    faces = np.concatenate([black, pale])
-    for corners, colour in polygons:  # as thin triangles from the middle
+    more = []
+    for corners, colour in polygons:
         k, tip = np.arange(len(corners)), np.full(len(corners), len(corners))
-        fan = len(points) + np.stack([tip, tip, k, np.roll(k, -1)], axis=1)
-        points = np.concatenate([points, corners, corners.mean(axis=0)[None]])
-        faces = np.concatenate([faces, fan])
-        fill.append(_shaded(points, fan, colour, 0.2))
+        fan = np.stack([tip, k, np.roll(k, -1)], axis=1)
+        more.append((np.concatenate([corners, corners.mean(axis=0)[None]]), fan, colour))
     lines = [*plot.families(V, Q, {"u": 0.45, "v": 0.45}), *lines]
-    plot.scene(ax, view, points, faces, np.concatenate(fill), lines, 0.003).set_clip_on(False)
-
-
-def _shaded(V, faces, colours, depth=0.45):
-    grey = plot.shade(V, faces, "white", LIGHT, depth)
-    return grey * (to_rgb(colours) if isinstance(colours, str) else colours)
+    plot.board(ax, view, V, Q, lines, more, colours)
 
 
 def enlarged(ax, box, V, Q, faces, colours=EXACT):

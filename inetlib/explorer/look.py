@@ -114,7 +114,7 @@ def picture(V, Q, choice, shade, camera, form) -> bytes:
     choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`."""
     plan = layout(Q, len(V), choice.families, choice.parallelograms)
     W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
-    fill = fills(plan, LIGHT, shade) / 255 * plot.shade(W, faces, "white")
+    fill = fills(plan, LIGHT, shade) / 255
     width, named = 0.6 * line_width(len(Q)), plan.lines.items()
     lines = [(W[pair], plot.COLOURS[name], width) for name, pairs in named for pair in pairs]
     file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
@@ -124,6 +124,6 @@ def picture(V, Q, choice, shade, camera, form) -> bytes:
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
-        plot.scene(ax, camera, W, faces, fill, lines)
+        plot.scene(ax, camera, [(W, faces, fill)], lines)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()
