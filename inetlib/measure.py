@@ -187,7 +187,8 @@ def nonconvex(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
     """The faces that are darts: seen along d1 x d2, their diagonals do not cross.
 
     The angles know nothing of them, as they do not see where the diagonals lie.
-    """
+
+    Paper: B11."""
     d1, d2, _, m24 = vectors(V, Q)
     v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
     apart = v2 - v1 + m24  # from the middle of v1 v3 to the middle of v2 v4

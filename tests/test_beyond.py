@@ -1,4 +1,4 @@
-"""Beyond the paper: the half plane of rho, the pencil, labels, freedom, angles at vertices."""
+"""Beyond the paper: rho and its half plane, the pencil, labels, freedom, darts, stars."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,7 +18,8 @@ from inetlib import (
     surfaces,
 )
 from inetlib.drawings import beyond_freedom, beyond_labels, beyond_rho, beyond_star
-from inetlib.solver import freedom
+from inetlib.solver import freedom, problem, run
+from inetlib.solver.goal import aim
 
 DEGREE = np.pi / 180
 
@@ -223,6 +224,58 @@ def test_one_curve_can_be_kept_and_the_whole_boundary_not():
     assert not failed.converged and "not converged" in failed.message
     rim = mesh.boundary_loops(Q)[0]
     assert np.array_equal(failed.V[rim], V[rim]) and np.isfinite(failed.V).all()
+
+
+def turns_wrong(V, Q):
+    """The faces with a corner that turns the other way, seen along the normal of the diagonals."""
+    P = V[Q]
+    normal = np.cross(P[:, 2] - P[:, 0], P[:, 3] - P[:, 1])
+    sides = np.roll(P, -1, axis=1) - P
+    turns = np.cross(np.roll(sides, 1, axis=1), sides)
+    return np.flatnonzero((np.einsum("fkx,fx->fk", turns, normal) < 0).any(axis=1))
+
+
+def test_shifting_every_other_vertex_changes_no_angle_and_makes_darts():
+    web = loxodrome.web(surfaces.vase_profile(), 75 * DEGREE, 60 * DEGREE, 24, 12)
+    hexagon, rings, _ = mesh.polygon_rings(6, 4)
+    tan = np.tan(0.8 * conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, 12, 9, edge=0.08))
+    for V, Q in (web[:2], (hexagon, rings), surfaces.freeform_patch(9, 7), conformal.quads(tan)):
+        sides = np.stack([Q, np.roll(Q, -1, axis=1)], axis=-1).reshape(-1, 2).T
+        colour, loop = mesh.two_colour(len(V), *sides, np.ones(Q.size, dtype=bool))
+        assert loop is None and (colour[sides[0]] != colour[sides[1]]).all()
+        size = np.linalg.norm(measure.vectors(V, Q)[0], axis=1).mean()
+        across = np.eye(3)[np.argsort(np.ptp(V, axis=0))[-2:]].sum(axis=0)  # in the flatter plane
+        before, seen = measure.quality(V, Q), []
+        assert before.darts == len(turns_wrong(V, Q)) == 0
+        for length in (0.01, 0.3, 0.6, 1.2):
+            shift = length * size * colour[:, None] * across
+            for judge in (measure.ratios, measure.angles):
+                np.testing.assert_allclose(judge(V + shift, Q), judge(V, Q), rtol=0, atol=1e-12)
+            after = measure.quality(V + shift, Q)
+            assert (after.flips, after.area_ratio) == (
+                before.flips,
+                pytest.approx(before.area_ratio),
+            )
+            assert after.nonconvex.tolist() == turns_wrong(V + shift, Q).tolist()
+            seen.append(after.darts)
+        assert seen[0] == 0 and seen[-1] > len(Q) / 3
+        np.testing.assert_allclose(freedom.jacobian(V, Q) @ shift.ravel(), 0, atol=1e-9)
+
+
+def test_a_coupled_step_shifts_every_other_vertex_less():
+    V, Q = surfaces.freeform_patch(10, 10)
+    V = V + 0.01 * np.random.default_rng(2).normal(size=V.shape)
+    goal = aim(60 * DEGREE, 45 * DEGREE)
+    given = problem.prepare(V, Q, goal)
+    free, _ = run.angle_step(given, V, goal, np.zeros(0))
+    tied, _ = run.coupled_step(given, V, goal, np.zeros(0), run.LOOSE)
+    apart = [
+        np.linalg.norm(d[Q][:, ::2].sum(axis=1) - d[Q][:, 1::2].sum(axis=1)) for d in (free, tied)
+    ]
+    residual, J, _ = run.equations(given, V, goal, np.zeros(0))
+    for d in (free, tied):  # both meet the linearised angles
+        assert np.abs(residual + J @ d.ravel()).max() < 1e-6 * np.abs(residual).max()
+    assert apart[1] < 0.5 * apart[0]
 
 
 def test_half_turns_keep_any_angles_and_mirrors_only_right_ones():

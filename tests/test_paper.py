@@ -21,7 +21,7 @@ EVERYTHING = (
     + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
     + [f"App. A.{k}" for k in range(1, 5)]
 )
-BEYOND = [f"B{k}" for k in range(1, 11)]
+BEYOND = [f"B{k}" for k in range(1, 12)]
 
 
 @functools.cache

@@ -29,6 +29,11 @@ def deviations(nets) -> np.ndarray:
     return np.max(found, axis=0) if nets else np.full(2, np.nan)
 
 
+def darts(nets) -> int:
+    """How many faces of (V, Q, ...) tuples are darts."""
+    return sum(len(measure.nonconvex(V, Q)) for V, Q, *_ in nets)
+
+
 def rounded(value):
     """What JSON makes of dicts, lists, numbers and words, floats rounded to 1e-9."""
     text = json.dumps(value, allow_nan=False)
@@ -37,7 +42,8 @@ def rounded(value):
 
 def drawn(*degrees):
     """A decorator for `draw` of a module: what it returns, (figure, data, nets, claims), as a
-    `Drawing` of the module's name, with those arguments of the call that are numbers.
+    `Drawing` of the module's name, with those arguments of the call that are numbers, and
+    with one claim more, the darts in its nets.
 
     degrees: names of angles that are radians in the call, and noted in degrees."""
 
@@ -52,7 +58,8 @@ def drawn(*degrees):
             noted = {name: _noted(x, name in degrees) for name, x in given.arguments.items()}
             noted = {name: x for name, x in noted.items() if x is not None}
             name, function = module.rpartition(".")[2], f"{module}.{draw.__name__}"
-            return Drawing(name, figure, function, noted, data, nets, rounded(claims))
+            claims = rounded(claims | ({"darts": darts(nets)} if nets else {}))
+            return Drawing(name, figure, function, noted, data, nets, claims)
 
         return whole
 
@@ -71,6 +78,9 @@ def _noted(value, in_degrees=False):
     return value if np.isscalar(value) else None
 
 
-def worst(V, Q, angles):
-    """The larger deviation of a net from its two angles, over all faces: degrees, 6 decimals."""
-    return round(float(np.degrees(deviations([(V, Q, *angles)]).max())), 6)
+def sampled(name, V, Q, angles):
+    """Claims on a net that is not exact: the larger deviation from its two angles, and darts.
+
+    angles: radians; the deviation over all faces is in degrees, with 6 decimals."""
+    off = round(float(np.degrees(deviations([(V, Q, *angles)]).max())), 6)
+    return {f"{name}_max_deviation_deg": off, f"{name}_darts": darts([(V, Q)])}

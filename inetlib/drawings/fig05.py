@@ -5,7 +5,7 @@ from matplotlib.colors import to_rgb
 
 from .. import conformal, measure, mesh, parallelogram, plot
 from ..plot import COLOURS, DEGREE
-from . import drawn, worst
+from . import drawn, sampled
 
 STEPS = {"u": (1, 0), "v": (0, 1), "d1": (1, -1), "d2": (1, 1)}  # along the families, in (u, v)
 SMOOTH = {"u": "$X_u$", "v": "$X_v$", "d1": "$Y_u$", "d2": "$Y_v$"}
@@ -53,10 +53,8 @@ def draw(
         ax.set_anchor("N")
         plot.panel(ax, name, TITLES[name])
     domain = conformal.quads(conformal.sheared_grid(*asked, cells, cells, edge=size / cells))
-    claims = {
-        "sampled_net_max_deviation_deg": worst(*net, asked),
-        "sampled_net_half_size_max_deviation_deg": worst(*finer, asked),
-    }
+    claims = sampled("sampled_net", *net, asked)
+    claims |= sampled("sampled_net_half_size", *finer, asked)
     return figure, {"domain": domain[0], "mesh": net[0]}, [(*domain, *asked)], claims
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import conformal, parallelogram, plot
 from ..plot import DEGREE
-from . import drawn, worst
+from . import drawn, sampled
 
 RIGHT = 90 * DEGREE
 TITLES = {"A": r"$\lambda=1$", "B": r"$\mu=1$", "C": r"$\lambda=\mu$", "D": r"$\lambda=\mu=1$"}
@@ -33,7 +33,7 @@ def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=2
         nets.append((domain, Q, *target))
         data |= {f"net_{name}": V, f"domain_{name}": domain}
         claims |= {f"lam_{name}": lam, f"mu_{name}": mu}
-        claims[f"sampled_net_{name}_max_deviation_deg"] = worst(V, Q, target)
+        claims |= sampled(f"sampled_net_{name}", V, Q, target)
     flat = view(np.concatenate([data[f"net_{name}"] for name in asked]))[0]
     for name in asked:
         axes[name].update_datalim([flat.min(axis=0), flat.max(axis=0)])

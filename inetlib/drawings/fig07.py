@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import conformal, developable, plot
 from ..plot import DEGREE
-from . import drawn, worst
+from . import drawn, sampled
 
 WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
 PANELS = [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
@@ -44,7 +44,7 @@ def draw(
     data, claims = {"domain": domain}, {}
     for name, bend in maps.items():
         V = data[f"net_{name}"] = bend(z).reshape(-1, 3)
-        claims[f"chords_{name}_max_deviation_deg"] = worst(V, Q, (theta, theta0))
+        claims |= sampled(f"chords_{name}", V, Q, (theta, theta0))
         claims[f"stretch_{name}"] = _stretch(bend, z)
         _sheet(axes[name], view, bend, z)
         plot.panel(axes[name], name, TITLES[name])

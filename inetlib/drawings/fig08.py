@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import conformal, parallelogram, plot, surfaces
 from ..plot import DEGREE
-from . import drawn, isothermal, worst
+from . import drawn, isothermal, sampled
 
 
 @drawn("azimuth", "elevation")
@@ -28,7 +28,7 @@ def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     lam, mu = parallelogram.ratios(*isothermal.ANGLES)
     theta, theta0 = np.degrees(isothermal.ANGLES)
     claims = {"lam_squared": lam**2, "mu_squared": mu**2, "theta_deg": theta, "theta0_deg": theta0}
-    claims["sampled_net_max_deviation_deg"] = worst(V, Q, isothermal.ANGLES)
+    claims |= sampled("sampled_net", V, Q, isothermal.ANGLES)
     domain, _ = conformal.quads(z)
     return figure, {"net": V, "domain": domain}, [(domain, Q, *isothermal.ANGLES)], claims
 

@@ -7,7 +7,7 @@ import numpy as np
 from .. import conformal, measure, mesh, moebius, plot, reference, solver, surfaces
 from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import drawn, isothermal, worst
+from . import darts, drawn, isothermal, sampled
 from .lighter import lighter
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
@@ -45,13 +45,13 @@ def draw(around=20, t=45 * DEGREE):
         if panel[1] == "1":
             nets.append((*conformal.quads(z), *isothermal.ANGLES))
         data[f"net_{panel}"] = V
-        off = worst(V, Q, isothermal.ANGLES)
-        claims[f"sampled_net_{panel}_max_deviation_deg"] = off
+        claims |= sampled(f"sampled_net_{panel}", V, Q, isothermal.ANGLES)
     glides = optimised(around, t)
     for panel, g in glides.items():
         V = data[f"net_{panel}"] = g.result.V
         _panel(axes[panel], panel, V, g.Q, V[g.rows[:, MARKED[panel[0]]]])
         nets.append((V, g.Q, *g.angles))
+        claims[f"{panel}_darts"] = darts(nets[-1:])
     for row in distances(glides):
         claims[f"off_surface_{row.panel}"] = round(row.off, 6)
         claims[f"hausdorff_{row.panel}"] = [round(row.there, 6), round(row.back, 6)]

@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import conformal, moebius, plot, surfaces
 from ..plot import DEGREE
-from . import drawn, isothermal, worst
+from . import drawn, isothermal, sampled
 
 CIRCLE = np.exp(2j * np.pi * np.arange(181) / 180)
 
@@ -28,8 +28,7 @@ def draw(around=24, rows=8, top=3, azimuth=-90 * DEGREE, elevation=22 * DEGREE):
     plot.panel(axes["A'"], "A'", "in the plane (dashed: equator)")
     data, claims = {"sphere": V, "plane": W}, {}
     for name, points in data.items():
-        off = worst(points, Q, isothermal.ANGLES)
-        claims[f"sampled_net_{name}_max_deviation_deg"] = off
+        claims |= sampled(f"sampled_net_{name}", points, Q, isothermal.ANGLES)
     return figure, data, [(*conformal.quads(z), *isothermal.ANGLES)], claims
 
 

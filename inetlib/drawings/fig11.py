@@ -35,9 +35,8 @@ def draw(theta=ANGLES[0], theta0=ANGLES[1], m=18, profile=None, azimuth=VIEW[0],
         axes[name].set_anchor("S")
         axes[name.lower()].set(xlim=(-0.95, 1.05), ylim=(-0.8, 0.75))
     lam, mu = (float(x[0]) for x in measure.ratios(net.V, net.Q))
-    quality = measure.quality(net.V, net.Q)
     claims = {"rows": int(net.rows), "lam": lam, "mu": mu}
-    claims |= {"flips": quality.flips, "darts": quality.darts}
+    claims["flips"] = measure.quality(net.V, net.Q).flips
     return figure, {"net": net.V}, [(net.V, net.Q, theta, theta0)], claims
 
 

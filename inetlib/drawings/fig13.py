@@ -5,7 +5,7 @@ from matplotlib.colors import Normalize
 
 from .. import mesh, moebius, plot, reference, solver
 from ..plot import DEGREE
-from . import drawn, patches
+from . import darts, drawn, patches
 
 SIXTY = 60 * DEGREE
 SETTINGS = {"A": {"theta": SIXTY, "theta0": SIXTY}, "B": {"theta": SIXTY, "theta0": 45 * DEGREE}}
@@ -66,6 +66,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
         _net(image, view, images[letter], Q, polygon, colours)
         plot.panel(image, letter + "'", f"Moebius image of {letter}")
         claims |= patches.claims(letter, result, Q)
+        claims[f"{letter}'_darts"] = darts([(images[letter], Q)])
     _history(axes["steps"], found)
     patches.bar(axes["A'"], scale, [0.68, 0.9, 0.6, 0.035])
     patches.align([axes[k] for k in ("start", "A", "B")], 0.15)

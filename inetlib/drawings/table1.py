@@ -61,7 +61,7 @@ def _row(Q, found):
     numbers = report.report(found.V, Q, theta=found.theta, theta0=found.theta0)
     spreads = numbers.theta, numbers.theta0
     off = [s.max_deviation for s in spreads] + [s.mean_deviation for s in spreads]
-    residual = found.history[-1].residual
+    residual = min(found.history, key=lambda step: step.key).residual  # of the net returned
     return [
         *map(str, (len(Q), *found.sizes)),
         f"{residual:.0e}" if residual > NOISE else "< 1e-20",

@@ -154,7 +154,8 @@ def coupled_step(
     sum |d1 - d2 + d3 - d4|^2 / 4 over the corners of the faces, all in local lengths.
     weights: of this size, and of the distances from the tangent planes of the reference,
     beside the equations.
-    """
+
+    Paper: B11."""
     with timed(problem.seconds, "assemble"):
         f, J, G = equations(problem, V, goal, s)
         root = np.repeat(np.sqrt(problem.mobility), 3)
