@@ -58,6 +58,7 @@ explore: $(READY)
 bench: $(READY)
 	$(BIN)/python bench/bench_solver.py
 	$(BIN)/python bench/random_patches.py
+	$(BIN)/python bench/random_surfaces.py
 
 lint: $(READY)
 	$(BIN)/ruff format .

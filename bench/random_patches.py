@@ -3,8 +3,9 @@
 python bench/random_patches.py [--patches 200] [--pairs 5] [--seed 1]
 
 Bumpy patches of 8 x 8 to 30 x 30 quads, bumps up to 30 % of their size; targets uniform in
-(30, 150) degrees.  Each run must end converged without a flipped face, judged by `measure`,
-or say that it did not converge: a run that claims more than the judge finds stops the script."""
+(30, 150) degrees.  Each run must end converged, without a flipped face or a dart as `measure`
+judges, or say that it did not converge: one that claims more than the judge finds stops the
+script."""
 
 import argparse
 import time

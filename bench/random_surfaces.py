@@ -4,9 +4,8 @@ python bench/random_surfaces.py [--surfaces 500] [--quads 400] [--seed 1]
 
 Six families, irregularly triangulated: saddles of order 2 to 4, domes up to a hemisphere and
 beyond, bumpy disks, strips, thin fins, canopies on 4 to 8 supports; angles uniform in (30, 150)
-degrees.  A net is good when `measure` finds the angles and no flipped and no non-convex face;
-a cover that claims more than the judge finds stops the script.
-"""
+degrees.  A net is good when `measure` finds the angles and no flipped face and no dart;
+a cover that claims more than the judge finds stops the script."""
 
 import argparse
 import time

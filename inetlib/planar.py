@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.sparse import bsr_array, coo_array, csr_array, diags_array, kron
 from scipy.sparse.csgraph import connected_components
 
-from . import mesh, parallelogram, ties
+from . import measure, mesh, parallelogram, ties
 from .solver import sparse
 
 SAMPLES = 1000  # of an outline given as a function
@@ -33,6 +33,7 @@ class Planar(NamedTuple):
     distance: float  # the largest distance of a boundary vertex from its outline; nan without one
     flipped: np.ndarray  # faces whose edges cross
     wound: np.ndarray  # interior vertices around which the net winds more than once
+    darts: int  # faces that are not convex, those whose edges cross too
     message: str  # all this in words
 
 
@@ -87,9 +88,11 @@ def planar_net(
     V = np.stack([z.real, z.imag, np.zeros(count)], axis=1)
     words = f"{count - len(Q)} complex freedoms, equations off by {residual:.1g}"
     words += f", boundary off by {distance:.3g}" if rims else ""
-    if len(flipped) + len(wound):
-        words += f"; {len(flipped)} faces cross themselves, {len(wound)} vertices are wound twice"
-    return Planar(V, residual, count - len(Q), distance, flipped, wound, words)
+    darts = len(measure.nonconvex(V, Q))
+    if darts + len(wound):
+        words += f"; {darts} faces are darts, {len(flipped)} of them cross themselves"
+        words += f", {len(wound)} vertices are wound twice"
+    return Planar(V, residual, count - len(Q), distance, flipped, wound, darts, words)
 
 
 def factor_k(theta: float, theta0: float) -> complex:

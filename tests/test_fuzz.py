@@ -90,7 +90,7 @@ def read_all(folder, each, slow, seed):
     chance, paths = random.Random(seed), []
     for suffix, kinds in originals(folder).items():
         for kind, data in enumerate(kinds):
-            for number in range(slow if suffix == ".vtp" else each):
+            for number in range(slow if suffix in (".vtp", ".3dm") else each):
                 path = folder / f"{kind}_{number}{suffix}"
                 path.write_bytes(mutated(data, chance))
                 paths.append(path)

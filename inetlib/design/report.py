@@ -41,7 +41,7 @@ class Report(NamedTuple):
     edge_mean: float
     edge_high: float
     size_ratio: float  # longest / shortest d1: how much the similar parallelograms differ in size
-    converged: bool = None  # all angles within the tolerance and no face flipped
+    converged: bool = None  # all angles within the tolerance, no face flipped or a dart
     message: str = None  # the same in words
     distance_mean: float = None  # from the net's vertices to the surface, in diagonals
     distance_max: float = None

@@ -22,22 +22,43 @@ found = pyvista.read(sys.argv[1])
 assert not found.n_strips, "it holds strips of triangles, and plain polygons are wanted"
 sizes = numpy.array([len(face) for face in found.irregular_faces], dtype=int)
 numpy.savez(sys.stdout.buffer, points=found.points, padded=found.faces, sizes=sizes)"""
+READ_3DM = """import sys, numpy, rhino3dm
+model = rhino3dm.File3dm.Read(sys.argv[1])
+assert model is not None, "it is no Rhino file"
+meshes = [one.Geometry for one in model.Objects if isinstance(one.Geometry, rhino3dm.Mesh)]
+assert meshes, "it holds no mesh, mesh its surfaces first"
+points, padded, sizes = [], [], []
+for mesh in meshes:
+    faces = (dict.fromkeys(mesh.Faces[k]) for k in range(len(mesh.Faces)))
+    faces = [[len(points) + corner for corner in face] for face in faces]
+    sizes += [len(face) for face in faces]
+    padded += [k for face in faces for k in (len(face), *face)]
+    corners = (mesh.Vertices.Point3dAt(k) for k in range(len(mesh.Vertices)))
+    points += [(p.X, p.Y, p.Z) for p in corners]
+numpy.savez(sys.stdout.buffer, points=points, padded=padded, sizes=sizes)"""
+PATIENCE = 20  # seconds, and as many for each megabyte of a file, for another process
 
 
 def read_vtp(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
-    """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over.
-
-    Another process reads it: some broken files end the process in which VTK reads them."""
+    """Points (n, 3) and faces of a VTK XML PolyData file; lines and points are passed over."""
     start = path.read_bytes()[:2000]
     if b"<VTKFile" not in start or b"PolyData" not in start:
         raise ValueError("no VTP file: an XML file of the type PolyData is wanted")
-    command = [sys.executable, "-P", "-W", "ignore", "-c", READ_VTP, path]
-    done = subprocess.run(command, capture_output=True)
+    return _read(READ_VTP, path, "the VTP file is broken, says VTK")
+
+
+def _read(code, path, broken):
+    """Points and faces that another process finds: some broken files end the one that reads."""
+    command = [sys.executable, "-P", "-W", "ignore", "-c", code, path]
+    patience = PATIENCE * (1 + path.stat().st_size / 1e6)
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=patience)
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"{broken}: no end after {patience:.0f} seconds") from None
     errors = done.stderr.decode(errors="replace")
     said = re.search(r"(?:ERR\|.*?\)|AssertionError): ([^\r\n\x1b]*)", errors)
     if said or done.returncode:
-        reason = f": {said[1].strip()}" if said else ""
-        raise ValueError(f"the VTP file is broken, says VTK{reason}")
+        raise ValueError(f"{broken}: {said[1].strip()}" if said else broken)
     points, padded, sizes = np.load(BytesIO(done.stdout)).values()  # sizes before the faces, too
     if len(set(sizes.tolist())) == 1:
         return points, padded.reshape(len(sizes), -1)[:, 1:]
@@ -102,20 +123,7 @@ def write_dxf(
 
 def read_3dm(path: Path) -> tuple[np.ndarray, list]:
     """Points (n, 3) and faces of all meshes of a Rhino file; other objects are passed over."""
-    import rhino3dm as rhino
-
-    model = rhino.File3dm.Read(str(path))
-    if model is None:
-        raise ValueError("no Rhino file, or a broken one")
-    meshes = [one.Geometry for one in model.Objects if isinstance(one.Geometry, rhino.Mesh)]  # type: ignore[attr-defined]
-    if not meshes:
-        raise ValueError("the Rhino file holds no mesh: mesh its surfaces first")
-    points, faces = [], []
-    for mesh in meshes:
-        corners = (mesh.Faces[k] for k in range(len(mesh.Faces)))
-        faces += [[len(points) + c for c in dict.fromkeys(four)] for four in corners]
-        points += [mesh.Vertices.Point3dAt(k) for k in range(len(mesh.Vertices))]
-    return np.array([(p.X, p.Y, p.Z) for p in points]), faces
+    return _read(READ_3DM, path, "the Rhino file is broken")
 
 
 def write_3dm(

@@ -108,10 +108,14 @@ def _off_rows(every):
     """Rows for `_off` of (line number, word) pairs: the counts, points, and faces, without more."""
     rows, at = [], 0
     most = [int(word) for _, word in every[:2]]
-    sizes = [3] * (1 + most[0]) + [None] * most[1]
-    for size in sizes:
-        size = 1 + int(every[at][1]) if size is None and at < len(every) else size
-        number, words = zip(*every[at : at + (size or 1)], strict=True)
+    if len(most) < 2 or min(most) < 0 or sum(most) > len(every):
+        raise ValueError
+    for number in range(1 + sum(most)):
+        face = number > most[0] and at < len(every)
+        size = 1 + int(every[at][1]) if face else 3
+        if not 0 < size <= len(every) - at:
+            raise ValueError
+        number, words = zip(*every[at : at + size], strict=True)
         rows.append((number[0], list(words)))
         at += size
     if at != len(every):
