@@ -7,6 +7,8 @@ from importlib.resources import files
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 
 from . import mesh, raster
@@ -151,14 +153,14 @@ def families(V, Q, widths):
     return [(V[line], COLOURS[name], w) for name, w in widths.items() for line in found[name]]
 
 
-def board(ax, view, V, Q, lines=(), more=(), fill=DARK):
+def board(ax, view, V, Q, lines=(), more=(), fill=DARK, pixels=700):
     """A net in space: its inscribed parallelograms over the light surface; see `scene`.
 
     more: further layers below; fill: the colour of the parallelograms, or one of each."""
     quads, black = mesh.checkerboard(V, Q)[:2]
     corners = quads[black].reshape(-1, 3)
     apart = np.arange(len(corners)).reshape(-1, 4)  # with corners of their own, to be flat
-    return scene(ax, view, [(V, Q, PALE), *more, (corners, apart, fill)], lines)
+    return scene(ax, view, [(V, Q, PALE), *more, (corners, apart, fill)], lines, pixels)
 
 
 def scene(ax, view, layers, lines=(), pixels=700, lift=0.003):
@@ -174,5 +176,8 @@ def scene(ax, view, layers, lines=(), pixels=700, lift=0.003):
         runs = raster.in_front(seen, view, points, len(layers))
         styles.setdefault((width, colour), []).extend(view(run)[0] for run in runs)
     for (width, colour), runs in styles.items():
-        curves(ax, runs, colour, width, zorder=2 + width / 100)
+        look = {"facecolor": "none", "edgecolor": colour, "linewidth": width, "capstyle": "round"}
+        if runs:  # as one path, for a small file
+            path = Path.make_compound_path(*map(Path, runs))
+            ax.add_patch(PathPatch(path, zorder=2 + width / 100, joinstyle="round", **look))
     return seen

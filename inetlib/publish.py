@@ -14,6 +14,7 @@ import PIL.Image
 from . import files
 from .drawings import Drawing, deviations, rounded, same
 
+INSIDE = 128  # dots per inch of pictures inside an SVG
 DIGITS = 7  # decimals of the data that are stored
 
 
@@ -43,9 +44,10 @@ def _draw(drawing, folder, manifest):
     svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
     drawn = io.StringIO()
-    drawing.figure.savefig(drawn, format="svg", metadata={"Date": None, "Creator": None})
+    drawing.figure.savefig(drawn, format="svg", dpi=INSIDE, metadata={"Date": None, "Creator": None})
     svg.write_text(same.plain_svg(drawn.getvalue()), encoding="utf-8", newline="\n")
     drawing.figure.savefig(png, format="png", metadata={"Software": None})
+    png.write_bytes(same.few_tones(png.read_bytes()))
     np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})
     off = np.degrees(deviations(drawing.nets)).tolist() if drawing.nets else (None, None)
     entry = {"function": drawing.function, "parameters": drawing.parameters, "sha256": _hash(data)}

@@ -8,7 +8,7 @@ from . import drawn, isothermal, sampled
 
 
 @drawn("azimuth", "elevation")
-def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
+def draw(around=36, rows=14, azimuth=-80 * DEGREE, elevation=22 * DEGREE):
     """Two neighbouring squares with their parallelogram; an isothermal net with its I-net.
 
     around: squares of a full turn of the catenoid; rows: of squares; azimuth, elevation: the
@@ -18,8 +18,8 @@ def draw(around=20, rows=8, azimuth=-80 * DEGREE, elevation=20 * DEGREE):
     step = 2 * np.pi / around
     z = isothermal.domain(rows, around, step, 1j * step * rows / 2)
     V, Q = isothermal.sample(surfaces.CATENOID, z)
-    lines = plot.families(V, Q, {"d1": 0.5, "v": 1.0, "u": 1.0})
-    lines = [(p, plot.GREY if w == 0.5 else c, w) for p, c, w in lines]  # edges of squares: thin
+    squares = [(points, plot.GREY, 0.3) for points, _, _ in plot.families(V, Q, {"d1": 0})]
+    lines = [*squares, *isothermal.lines(V, Q, 0.7)]
     plot.board(axes["B"], plot.camera(azimuth, elevation), V, Q, lines)
     titles = {"A": "in two squares of the $(u, v)$ plane", "B": "on a catenoid"}
     for name, ax in axes.items():
@@ -43,10 +43,10 @@ def _squares(ax):
     for family, lines, width, style, zorder in (
         ("d1", [[v1, v3]], 0.9, (0, (4, 3)), 2),
         ("d2", [[v2, v4]], 0.9, (0, (4, 3)), 2),
-        ("u", [[v2, v3], [v1, v4]], 2.2, "-", 4),
-        ("v", [[v1, v2], [v3, v4]], 2.2, "-", 4),
-        ("u", [[p12, p34]], 0.9, "-", 2),
-        ("v", [[p23, p41]], 0.9, "-", 2),
+        ("v", [[v2, v3], [v1, v4]], 2.2, "-", 4),  # the colours of parallels and slanted curves
+        ("u", [[v1, v2], [v3, v4]], 2.2, "-", 4),
+        ("v", [[p12, p34]], 0.9, "-", 2),
+        ("u", [[p23, p41]], 0.9, "-", 2),
         ("d1", [[p12, p23], [p34, p41]], 1.8, "-", 3),
         ("d2", [[p12, p41], [p23, p34]], 1.8, "-", 3),
     ):

@@ -10,9 +10,9 @@ from ..solver.problem import Weights
 from . import darts, drawn, isothermal, sampled
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
-ROWS, COLUMNS, TOP = 8, 20, 4  # of each net; its upper edge v, in steps
-LEFT = {"A": 0, "B": 0, "C": 0, "D": -14, "E": -14}  # its left corner u, in steps
-MARKED = {"A": 13, "B": 13, "C": 13, "D": 10, "E": 10}  # the line that is highlighted
+ROWS, COLUMNS, TOP = 14, 36, 7  # of each net; its upper edge v, in steps
+LEFT = {"A": 0, "B": 0, "C": 0, "D": -25, "E": -25}  # its left corner u, in steps
+MARKED = {"A": 23, "B": 23, "C": 23, "D": 18, "E": 18}  # the line that is highlighted
 CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 45), "E": (-15, 28)}  # degrees
 CENTRES = {"A": (2.9, 0, 0.7), "B": (2, -1, 1.1), "C": (0.5, -3.6, 0.6)}  # of the inversions
 CENTRES |= {"D": (2.9, 0, 0), "E": (0, 0, 4.8)}
@@ -26,7 +26,7 @@ WEIGHTS = Weights(fairness=0.001, closeness=0.01)  # faces of very different siz
 
 
 @drawn("t")
-def draw(around=20, t=45 * DEGREE):
+def draw(around=36, t=45 * DEGREE):
     """The (arccos 1/sqrt 5, 45 degree) net on five surfaces, its images, and optimised nets.
 
     around: steps of a full turn of u; t: of the conjugate minimal surface, radians.  Column 2
@@ -34,7 +34,7 @@ def draw(around=20, t=45 * DEGREE):
     under inversions, optimised to (50, 50), both on their surfaces.  In each picture one
     u-curve, in column 1 a loxodrome, is highlighted.  Paper: Fig. 9."""
     panels = [[f"{letter}{column}" for column in TITLES] for letter in NAMES]
-    figure, axes = plot.canvas(panels, 6.6, 7.9)
+    figure, axes = plot.canvas(panels, 7.2, 9.2)
     for ax in axes.values():
         ax.set_aspect("equal", adjustable="datalim")  # titles in one line
     data, nets, claims = {}, [], {}
@@ -79,11 +79,11 @@ class Row(NamedTuple):
     back: float
 
 
-def optimised(around=20, t=45 * DEGREE):
+def optimised(around=36, t=45 * DEGREE):
     """The ten nets of columns 2 and 4 as {panel: `Glide`}, from "A2" and "A4" to "E4".
 
     around, t: as in `draw`.  On the cylinder, the sphere, the catenoid and their images the
-    nets are closed, as long as the patch is one full turn (around=20).  Paper: Fig. 9, Sec. 6."""
+    nets are closed, as long as the patch is one full turn (around=36).  Paper: Fig. 9, Sec. 6."""
     glides = {}
     for start, (surface, z) in _starts(around, t).items():
         column = int(start[1]) + 1
@@ -140,9 +140,8 @@ def _starts(around, t):
 def _panel(ax, panel, V, Q, curve):
     letter, column = panel[0], int(panel[1])
     view = plot.camera(*np.radians((CAMERAS if column < 3 else IMAGE_CAMERAS)[letter]))
-    lines = plot.families(V, Q, {"v": 0.6, "u": 0.6})
-    lines.append((curve, plot.COLOURS["u"], 2.2))
-    plot.board(ax, view, V, Q, lines)
+    lines = [*isothermal.lines(V, Q, 0.35), (curve, isothermal.SLANTED, 2)]
+    plot.board(ax, view, V, Q, lines, pixels=480)
     plot.panel(ax, f"{letter}_{column}", NAMES[letter] if column == 1 else "")
     if letter == "A":
         title = TITLES[column].replace("*", "\N{DEGREE SIGN}")

@@ -5,9 +5,11 @@ horizontal edges; a face is the parallelogram of two edges and two diagonals of 
 
 import numpy as np
 
-from .. import conformal
+from .. import conformal, plot
 
 ANGLES = np.arccos(1 / np.sqrt(5)), np.pi / 4
+# Parallels are drawn alike in all figures; here they are v-curves.
+PARALLEL, SLANTED = plot.COLOURS["u"], plot.COLOURS["v"]
 
 
 def domain(m, n, step, corner=0):
@@ -28,3 +30,10 @@ def curve(surface, line, k=6):
     s = np.arange((len(line) - 1) * k + 1) / k
     index = np.arange(len(line))
     return surface.point(np.interp(s, index, line.real), np.interp(s, index, line.imag))
+
+
+def lines(V, Q, width):
+    """The parallels and the other curves of the net, for `plot.scene`."""
+    found = plot.families(V, Q, {"u": width, "v": width})
+    swapped = {plot.COLOURS["u"]: SLANTED, plot.COLOURS["v"]: PARALLEL}
+    return [(points, swapped[colour], w) for points, colour, w in found]

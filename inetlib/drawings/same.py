@@ -2,6 +2,7 @@
 
 The last digits of computed numbers differ from one processor to the next."""
 
+import base64
 import io
 import re
 from decimal import Decimal
@@ -12,6 +13,9 @@ import PIL.Image
 POINT = 0.0101  # of an SVG, whose numbers have two decimals: one unit of the last of them
 LEVELS = 5  # of the 255 of a colour, that a pixel may differ by
 MEAN = 1e-4  # of the range of colours, that all pixels may differ by on average
+PAINTED = 48, 1e-3  # the same for pictures inside an SVG, which have few colours
+LARGE = 600_000  # bytes of a file
+TONES = 255, 96, 48  # of a picture, the first with which its file is not large
 DATA = 1e-6  # of the size of a figure, that its data may differ by
 WHOLE = -6  # the exponent of the last digit of claims that come out as whole numbers
 
@@ -19,6 +23,8 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 COORDINATE = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 COLOUR = re.compile(r"#[0-9a-f]{6}\b")
 HASHED = re.compile(r'\bid="([A-Za-z_]*)(?:\d+_)*[0-9a-f]{10}(?:_\d+)*"')
+STEP = re.compile(r"\s*\b([MLQCz]) ?\n?(?=[-\d\"MLQCz])")
+INSIDE = re.compile(r'(?<="data:image/png;base64,)[^"]*')
 ROUNDED = re.compile(r'(\b(?:d|x|y|width|height|points)="|translate\()([^")]*)')
 
 
@@ -63,12 +69,35 @@ def data(one: dict, two: dict) -> list:
 
 
 def plain_svg(svg: str) -> str:
-    """An SVG by matplotlib with two decimals and with numbers for the hashes in its names."""
+    """An SVG by matplotlib with two decimals and with numbers for the hashes in its names.
+
+    Pictures inside are `few_tones`."""
+    most = 0.3 * LARGE / max(1, len(INSIDE.findall(svg)))
+    svg = INSIDE.sub(lambda found: _inside(few_tones(base64.b64decode(found[0]), most)), svg)
     names = {}
     for match in HASHED.finditer(svg):
         names.setdefault(match[0][len('id="') : -1], f"{match[1]}-{len(names) + 1}")
     svg = re.sub(r'(?<=["#])[\w-]+(?=[")])', lambda match: names.get(match[0], match[0]), svg)
-    return ROUNDED.sub(lambda match: match[1] + COORDINATE.sub(_short, match[2]), svg)
+    svg = ROUNDED.sub(lambda match: match[1] + COORDINATE.sub(_short, match[2]), svg)
+    return STEP.sub(r"\1", svg)
+
+
+def _inside(png):
+    return base64.b64encode(png).decode()
+
+
+def few_tones(png: bytes, most: int = LARGE) -> bytes:
+    """The picture on white paper, with so few colours that its file has `most` bytes, if it can."""
+    image = PIL.Image.open(io.BytesIO(png)).convert("RGBA")
+    paper = PIL.Image.new("RGBA", image.size, "white")
+    image = PIL.Image.alpha_composite(paper, image).convert("RGB")
+    for tones in TONES:
+        out, method = io.BytesIO(), PIL.Image.Quantize.MEDIANCUT
+        few = image.quantize(tones, method, dither=PIL.Image.Dither.NONE)
+        few.save(out, "png", optimize=True)
+        if out.tell() <= most:
+            break
+    return out.getvalue()
 
 
 def _short(match):
@@ -80,6 +109,10 @@ def svg(one: str, two: str) -> bool:
     """Whether two texts of `plain_svg` show the same: coordinates and colours within tolerance."""
     if one == two:
         return True
+    pictures = [[base64.b64decode(x) for x in INSIDE.findall(s)] for s in (one, two)]
+    if not all(picture(*pair, *PAINTED) for pair in zip(*pictures, strict=False)):
+        return False
+    one, two = (INSIDE.sub("", s) for s in (one, two))
     colours = [[list(bytes.fromhex(x[1:])) for x in COLOUR.findall(s)] for s in (one, two)]
     plain = [COLOUR.sub("#", s) for s in (one, two)]
     if COORDINATE.split(plain[0]) != COORDINATE.split(plain[1]):
