@@ -44,7 +44,9 @@ def _draw(drawing, folder, manifest):
     svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
     drawn = io.StringIO()
-    drawing.figure.savefig(drawn, format="svg", dpi=INSIDE, metadata={"Date": None, "Creator": None})
+    drawing.figure.savefig(
+        drawn, format="svg", dpi=INSIDE, metadata={"Date": None, "Creator": None}
+    )
     svg.write_text(same.plain_svg(drawn.getvalue()), encoding="utf-8", newline="\n")
     drawing.figure.savefig(png, format="png", metadata={"Software": None})
     png.write_bytes(same.few_tones(png.read_bytes()))

@@ -5,39 +5,57 @@ from matplotlib.colors import to_rgb
 
 from .. import loxodrome, measure, parallelogram, plot, surfaces
 from ..plot import COLOURS, DEGREE
-from . import drawn, revolution
+from . import drawn, revolution, sampled
 
 STRIP, HALO = "#9db9de", 2.2
-TITLES = {"A": "a strip of quads", "B": "the DI-net", "C": "the isogonal 4-web"}
+TITLES = {"A": "a strip", "B": "the DI-net", "C": "the 4-web", "D": "along $d_1$, $d_2$"}
 ANGLES, VIEW = (75 * DEGREE, 60 * DEGREE), (54 * DEGREE, 24 * DEGREE)
 
 
 @drawn("theta", "theta0", "azimuth", "elevation")
-def draw(theta=ANGLES[0], theta0=ANGLES[1], m=18, profile=None, azimuth=VIEW[0], elevation=VIEW[1]):
-    """A strip between two loxodromes, the exact DI-net of all strips, and its 4-web.
+def draw(
+    theta=ANGLES[0],
+    theta0=ANGLES[1],
+    m=36,
+    coarse=18,
+    profile=None,
+    azimuth=VIEW[0],
+    elevation=VIEW[1],
+):
+    """A strip between two loxodromes, the exact DI-net of all strips, its 4-web, another I-net.
 
-    theta, theta0: radians; m: quads around the axis; profile: a `surfaces.Profile`, default
-    the vase; azimuth, elevation: the camera, radians, A at azimuth 0 (take a negative
-    azimuth for obtuse theta0).  Paper: Fig. 11."""
-    net = loxodrome.web(profile or surfaces.vase_profile(), theta, theta0, m)
-    figure, axes = plot.canvas([list("ABC"), list("abc")], 7.0, 5.8)
+    theta, theta0: radians; m, coarse: quads around the axis, in A fewer; profile: a
+    `surfaces.Profile`, default the vase; azimuth, elevation: the camera, radians, A at azimuth 0
+    (take a negative azimuth for obtuse theta0).  D has edges along d1 and d2: its angles are
+    those of a smooth web.  Paper: Fig. 11."""
+    profile = profile or surfaces.vase_profile()
+    strip, net = (loxodrome.web(profile, theta, theta0, count) for count in (coarse, m))
+    V, Q = loxodrome.subnet(net, "d1", "d2")
+    figure, axes = plot.canvas([list("ABCD"), list("abcd")], 7.6, 4.9)
     axes["A"].get_gridspec().set_height_ratios([2.3, 1])
-    figure.get_layout_engine().set(h_pad=0.1)
+    figure.get_layout_engine().set(h_pad=0.08)
     view = plot.camera(azimuth, elevation)
-    _strip(axes["A"], view, net)
-    revolution.black_quads(axes["B"], view, net)
-    revolution.web(axes["C"], view, net)
+    _strip(axes["A"], view, strip)
+    revolution.black_quads(axes["B"], view, net, 0.3)
+    revolution.web(axes["C"], view, net, width=0.45)
+    lines = plot.families(V, Q, {"u": 0.4, "v": 0.4})
+    colours = {COLOURS["u"]: COLOURS["d1"], COLOURS["v"]: COLOURS["d2"]}
+    plot.board(axes["D"], view, net.V, Q, [(p, colours[c], w) for p, c, w in lines])
     corners = _flat(net.V[net.Q[0]])
     _quad(axes["a"], corners)
     _inside(axes["b"], corners, theta, theta0)
     _directions(axes["c"], theta, theta0)
+    other = [float(x.mean()) for x in measure.angles(V, Q)]
+    _inside(axes["d"], _flat(V[Q[0]]), *other, ("u", "v", "d1", "d2"))
     for name, text in TITLES.items():
         plot.panel(axes[name], name, text)
         axes[name].set_anchor("S")
         axes[name.lower()].set(xlim=(-0.95, 1.05), ylim=(-0.8, 0.75))
     lam, mu = (float(x[0]) for x in measure.ratios(net.V, net.Q))
+    quality = measure.quality(net.V, net.Q)
     claims = {"rows": int(net.rows), "lam": lam, "mu": mu}
-    claims["flips"] = measure.quality(net.V, net.Q).flips
+    claims |= {"flips": quality.flips, "darts": quality.darts}
+    claims |= sampled("net_along_d1_and_d2", V, Q, other)
     return figure, {"net": net.V}, [(net.V, net.Q, theta, theta0)], claims
 
 
@@ -85,17 +103,19 @@ def _quad(ax, corners):
     plot.text(ax, -0.72j, r"$\lambda = |AD|\,/\,|BC|$", zorder=3)
 
 
-def _inside(ax, corners, theta, theta0):
-    """Its parallelogram: the angle theta between the sides, theta0 between the diagonals."""
-    left, low, right, top = 1.35 * (corners + np.roll(corners, -1, axis=0)) / 2
+def _inside(ax, corners, theta, theta0, names=("d1", "d2", "u", "v")):
+    """Its parallelogram: the angle theta between the sides, theta0 between the diagonals.
+
+    names: the families along its sides and its diagonals."""
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2
+    left, low, right, top = 0.6 * middles / np.linalg.norm(middles, axis=1).max()
     plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], plot.DARK, zorder=0)
-    plot.curves(ax, [[left, low], [right, top]], COLOURS["d1"], 2)
-    plot.curves(ax, [[left, top], [low, right]], COLOURS["d2"], 2)
-    plot.curves(ax, [[left, right]], COLOURS["u"], 2)
-    plot.curves(ax, [[low, top]], COLOURS["v"], 2)
+    lines = [[left, low], [right, top]], [[left, top], [low, right]], [[left, right]], [[low, top]]
+    for name, pair in zip(names, lines, strict=True):
+        plot.curves(ax, pair, COLOURS[name], 2)
     plot.angle(ax, left, low - left, top - left, 0.2)
     plot.angle(ax, np.zeros(2), right, top, 0.16)
-    one, two = (f"${plot.degrees(angle)}$" for angle in (theta, theta0))
+    one, two = (rf"${np.degrees(angle):.3g}\degree$" for angle in (theta, theta0))
     plot.text(ax, left - np.array([0.05, 0]), one, zorder=3, ha="right")
     plot.text(ax, 0.18 * _between(right, top), two, halo=HALO, zorder=3)
     plot.text(ax, -0.72j, r"sides: $\theta$, diagonals: $\theta_0$", zorder=3)
