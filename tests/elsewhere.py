@@ -26,12 +26,11 @@ SQUARE = {"theta": np.radians(75), "theta0": np.radians(50), "count": 150}
 
 
 def results():
-    """{name: array} of what hangs on ties: cuts of quads, painter's orders, symmetric covers."""
+    """{name: array} of what hangs on ties: cuts of quads, symmetric covers."""
     found = {}
     starts = {"rings": fig13.start()[:2], "patch": surfaces.freeform_patch()}
     for name, (V, Q) in starts.items():
         found[f"triangles of {name}"] = mesh.triangles(V, Q)[1]
-        found[f"order of {name}"] = plot.order(plot.camera(0.5, 0.7)(V)[1])
     side = np.linspace(-1, 1, 13)
     x, y = np.meshgrid(side, side, indexing="ij")
     flat = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
@@ -60,10 +59,9 @@ def shaken(size):
         x = np.asarray(x)
         return x * (1 + size * rng.uniform(-1, 1, x.shape)) if x.dtype.kind in "fc" else x
 
-    camera, plane, shade = plot.camera, plot.plane, plot.shade
+    camera, plane = plot.camera, plot.plane
     plot.camera = lambda *angles: lambda points: camera(*angles)(noisy(points))
     plot.plane = lambda points: plane(noisy(points))
-    plot.shade = lambda V, *more, **options: shade(noisy(V), *more, **options)
     lines = matplotlib.lines.Line2D.set_data
     matplotlib.lines.Line2D.set_data = lambda line, *xy: lines(line, *map(noisy, xy))
     return noisy

@@ -154,82 +154,23 @@ def test_a_camera_is_a_rotation_that_looks_from_its_direction(azimuth, elevation
     np.testing.assert_allclose([*xy, near], [3, 5, 2], atol=1e-15)
 
 
-def test_faces_are_darker_the_more_they_turn_from_the_light_on_both_sides_alike():
-    found = plot.shade(SQUARE, FACE, "#ff8000", light=(0, 0, 2), depth=0.35)
-    np.testing.assert_allclose(found, [[1, 128 / 255, 0]])
-    found = plot.shade(SQUARE, FACE, "#ff8000", light=(3, 0, 0), depth=0.35)
-    np.testing.assert_allclose(found, [[0.65, 0.65 * 128 / 255, 0]])
-    triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]])  # its normal is the y axis
-    found = plot.shade(triangle, np.array([[0, 1, 2]]), "#ffffff", light=(0, 1, 1), depth=0.5)
-    np.testing.assert_allclose(found, 1 - 0.5 * (1 - 0.5**0.5))
-    one = plot.shade(SQUARE, FACE)
-    np.testing.assert_allclose(plot.shade(100 * SQUARE, FACE[:, ::-1]), one)
-    collapsed = plot.shade(np.zeros((4, 3)), FACE)
-    assert collapsed.shape == (1, 3) and (collapsed > 0).all()
-
-
-def stacked(heights):
-    """Unit squares at the given heights."""
-    V = np.concatenate([SQUARE + np.array([0, 0, h]) for h in heights])
-    return V, np.arange(len(V)).reshape(-1, 4)
-
-
-@pytest.mark.parametrize("order", [(0, 1, 2), (2, 0, 1), (1, 2, 0), (2, 1, 0)])
-@pytest.mark.parametrize("view, wanted", [(ABOVE, [RED, GREEN, BLUE]), (BELOW, [BLUE, GREEN, RED])])
-def test_a_scene_paints_the_nearest_face_last(ax, order, view, wanted):
-    heights, colours = np.array([0.0, 1, 2])[list(order)], np.array([RED, GREEN, BLUE])
-    drawn = plot.scene(ax, view, *stacked(heights), fill=colours[list(order)])
-    np.testing.assert_array_equal(drawn.get_facecolors(), wanted)
-
-
-@given(st.lists(st.integers(-5, 5), min_size=1, max_size=30), st.integers(0, 99))
-def test_ties_are_painted_in_their_order_whatever_the_last_digits_are(levels, seed):
-    keys = np.array(levels) / 3
-    noisy = keys * (1 + 1e-13 * np.random.default_rng(seed).uniform(-1, 1, keys.shape))
-    wanted = [k for _, k in sorted(zip(levels, range(len(levels)), strict=True))]
-    assert plot.order(keys).tolist() == plot.order(noisy).tolist() == wanted
-
-
-@given(st.lists(st.floats(-1, 1), min_size=1, max_size=30))
-def test_the_order_is_that_of_the_keys_up_to_ties(keys):
-    keys = np.array(keys)
-    painted = plot.order(keys)
-    assert sorted(painted.tolist()) == list(range(len(keys)))
-    assert np.diff(keys[painted], prepend=keys.min()).min() >= -len(keys) * 3e-9
-
-
-def test_a_line_on_a_face_is_painted_over_it_and_under_the_next_one(ax):
-    line = np.array([[0, 0, 0], [0.5, 0.5, 0], [1, 1, 0]])
-    lines = [(line, "#00ff00", 2.0)]
-    drawn = plot.scene(ax, ABOVE, *stacked([0, 1]), fill=[RED, BLUE], lines=lines)
-    np.testing.assert_array_equal(drawn.get_edgecolors(), [RED, GREEN, GREEN, BLUE])
-    assert list(drawn.get_linewidths()) == [0.3, 2, 2, 0.3]
-    xy = ABOVE(line)[0]
-    np.testing.assert_allclose(drawn.get_paths()[1].vertices, xy[:2])
-    np.testing.assert_allclose(drawn.get_paths()[2].vertices, xy[1:])
-    assert drawn.get_facecolors()[1][3] == 0
-    view, border = plot.camera(0.3, 0.4), [(SQUARE[[0, 1, 2, 3, 0]], "#00ff00", 1.0)]
-    drawn = plot.scene(ax, view, SQUARE, FACE, fill=[RED], lines=border)  # all of a slanted face
-    np.testing.assert_array_equal(drawn.get_edgecolors(), [RED] + [GREEN] * 4)
-
-
-def test_a_scene_is_shaded_by_default_takes_one_colour_and_is_seen_whole(ax):
-    (V, faces), view = stacked([0, 1]), plot.camera(0.3, 0.4)
-    drawn = plot.scene(ax, ABOVE, V, faces, fill="#ff0000")
-    np.testing.assert_array_equal(drawn.get_facecolors(), [RED, RED])
-    ax.clear()
+def test_a_scene_is_a_picture_with_one_path_for_each_style_of_lines(ax):
     far = np.array([[0, 0, 0], [5, 5, 5]])
-    drawn = plot.scene(ax, view, V, faces, lines=[(far, "k", 1)])
-    np.testing.assert_allclose(drawn.get_facecolors()[:2, :3], plot.shade(V, faces))
-    xy = view(np.concatenate([V, far]))[0]
-    np.testing.assert_allclose(ax.dataLim.get_points(), [xy.min(axis=0), xy.max(axis=0)])
+    lines = [(SQUARE[[0, 1]], "#00ff00", 2.0), (SQUARE[[1, 2]], "#00ff00", 2.0), (far, "k", 1)]
+    view = plot.camera(0.3, 0.4)
+    scene = plot.scene(ax, view, [(SQUARE, FACE, "#ff0000")], lines)
+    (image,) = ax.images
+    np.testing.assert_array_equal(image.get_extent(), scene.extent)
+    assert [to_rgba(patch.get_edgecolor()) for patch in ax.patches] == [GREEN, to_rgba("k")]
+    green = ax.patches[0].get_path()
+    assert np.count_nonzero(green.codes == 1) == 2
+    np.testing.assert_allclose(green.vertices, view(SQUARE[[0, 1, 1, 2]])[0], atol=1e-12)
+    box, xy = ax.dataLim.get_points(), view(np.concatenate([SQUARE, far]))[0]
+    assert (box[0] <= xy.min(axis=0)).all() and (box[1] >= xy.max(axis=0)).all()
 
 
-@pytest.mark.parametrize("white", [False, True])
-def test_cells_cover_a_net_once(white):
+def test_a_board_shows_half_of_a_net_as_parallelograms(ax):
     V, Q = sheared(3, 4, v=(0, 1, 0))
-    points, black, light = plot.cells(V, Q, white)
-    x, y = points[np.concatenate([black, light])][..., :2].transpose(2, 0, 1)
-    area = (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(axis=1) / 2
-    assert np.abs(area).sum() == pytest.approx(12)
-    assert np.abs(area[:12]).sum() == pytest.approx(6)  # the inscribed parallelograms
+    scene = plot.board(ax, ABOVE, V, Q, fill="#ff0000")
+    red = scene.image[..., 2] == 0
+    assert np.mean(red[scene.seen.face >= 0]) == pytest.approx(0.5, abs=0.02)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from inetlib import plot, ties
-from inetlib.drawings import patches, revolution
+from inetlib import ties
+from inetlib.drawings import patches
 
 HALVES = np.array([0, 0, 1, 1, 2, 2, 3, 3, 4])  # of 0, 0.5, 1, ...: halves go down
 
@@ -44,15 +44,3 @@ def test_the_next_multiple_is_the_number_itself_up_to_rounding():
         assert patches.next_multiple(30 * (1 + noise), 5) == 30
     assert patches.next_multiple(30 + 1e-6, 5) == 35
     assert patches.next_multiple(1.15, 0.1) == pytest.approx(1.2)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_faces_seen_edge_on_do_not_show(seed):
-    angle = np.pi / 4 * np.arange(8) + np.pi / 8  # four of the eight sides along an axis
-    ring = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    V = noisy(seed, np.concatenate([ring, ring + np.array([0, 0, 1])]))
-    k = np.arange(8)
-    Q = np.stack([k + 8, k, (k + 1) % 8, (k + 1) % 8 + 8], axis=1)
-    shown = revolution.facing(plot.camera(0.0, 0.3), V, Q)
-    middle = V[Q].mean(axis=1)
-    np.testing.assert_array_equal(shown, middle[:, 0] > 0.1)
