@@ -242,7 +242,7 @@ def test_bad_input_is_named(given, words):
 
 def test_a_net_with_a_face_that_collapses_is_refused_by_name():
     z = conformal.sheared_grid(T, T0, 4, 3)
-    V, Q = conformal.quads(z)
+    _, Q = conformal.quads(z)
     z = (z.ravel() - z.ravel()[Q[5]].mean()) ** 2  # exact images of a grid, twice around face 5
     d1, d2 = z[Q[:, 2]] - z[Q[:, 0]], z[Q[:, 3]] - z[Q[:, 1]]
     assert np.abs(d2 / d1 - (d2 / d1)[0])[np.arange(len(Q)) != 5].max() < 1e-9
