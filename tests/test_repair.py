@@ -4,7 +4,7 @@ import igl
 import numpy as np
 import pytest
 
-from inetlib import examples, mesh, repair
+from inetlib import examples, loxodrome, mesh, repair
 
 
 def sheet(n, m, point):
@@ -222,3 +222,9 @@ def test_a_net_that_was_cut_open_keeps_its_duplicates_and_says_so():
     V, Q = sheet(8, 6, lambda u, v: polar(1, TAU * u, v))  # a tube: one seam
     W, R, _, said = repair.welded(V, Q)
     assert len(W) < len(V) and len(mesh.boundary_loops(R)) == 2 and "merged: 7" in said[0]
+
+
+def test_a_closed_net_without_duplicates_is_left_alone():
+    net = loxodrome.torus_web(3, 1, 12, 6, 1)
+    V, Q, polygons, said = repair.welded(net.V, net.Q)
+    assert V is net.V and Q is net.Q and not polygons and said == []
