@@ -47,7 +47,7 @@ def aim(
         if x is not None:
             check = check_angle if name in ANGLES else check_positive
             known[name] = float(check(name, x))
-            if name in ANGLES and not CLOSE < known[name] < np.pi - CLOSE:
+            if name in ANGLES and not CLOSE <= known[name] <= np.pi - CLOSE:
                 raise ValueError(f"{name} = {x} rad: {CLOSE} or more away from 0 and pi is wanted")
     if equal:
         return _equal(known)
