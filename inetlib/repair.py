@@ -256,6 +256,8 @@ def welded(V: np.ndarray, Q: np.ndarray, polygons: Sequence = ()) -> tuple:
     Duplicates stay where the quads would be no manifold, or a cut would be closed."""
     corners = np.concatenate([Q.ravel(), *polygons])
     joined, count = merge(V, corners, NEAR)
+    if not count:
+        return V, Q, polygons, []
     new = joined[: Q.size].reshape(Q.shape)
     try:
         mesh.check_quads(new)
@@ -264,8 +266,6 @@ def welded(V: np.ndarray, Q: np.ndarray, polygons: Sequence = ()) -> tuple:
             raise ValueError("a cut would be closed")
     except ValueError as error:
         return V, Q, polygons, [_unmerged(error, V)]
-    if not count:
-        return V, Q, polygons, []
     used, joined = np.unique(joined, return_inverse=True)
     parts = np.split(joined, np.cumsum([Q.size, *map(len, polygons)])[:-1])
     said = _counted({"duplicate vertices merged": count})

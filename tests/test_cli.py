@@ -4,6 +4,7 @@ import json
 import shlex
 import subprocess
 import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,12 @@ def test_the_entry_point_runs_and_knows_its_version():
     code += "raise SystemExit(e(group='console_scripts', name='inet')['inet'].load()())"
     done = subprocess.run([sys.executable, "-c", code, "--version"], capture_output=True, text=True)
     assert done.returncode == 0 and done.stdout.startswith("inet 0.")
+
+
+def test_the_explorer_as_a_module_is_the_command_of_that_name(tmp_path):
+    words = [sys.executable, "-m", "inetlib.explorer", "none.obj"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert refused((done.returncode, done.stdout, done.stderr), "none.obj")
 
 
 LOADED = """
@@ -327,6 +334,88 @@ def test_surfaces_are_repaired_and_it_is_said_or_refused(inet):
         assert found["converged"] and found["flips"] == 0 and 40 < found["quads"] < 160
         assert numbers(inet("measure", "a.obj", *ANGLES, "--json"))["deviation"] < 1e-6
         assert found["notes"] and all(n.startswith(f"{name}: ") for n in found["notes"])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has other words for a closed pipe")
+def test_a_reader_that_goes_away_is_no_mistake(inet, web):
+    code = "from inetlib.start import main; raise SystemExit(main())"
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", code, "measure", web], **pipes) as process:
+        process.stdout.close()
+        assert process.stderr.read() == b""
+    assert process.returncode == 0
+
+
+ERRORS = [
+    (MemoryError(), "there is not enough memory for this: ask for fewer quads"),
+    (PermissionError(13, "Permission denied", "jar.csv"), "jar.csv: Permission denied"),
+    (OSError(28, "No space left on device"), "[Errno 28] No space left on device"),
+    (ArithmeticError(), "ArithmeticError"),
+    (RuntimeError("two\n  lines"), "two lines"),
+]
+
+
+@pytest.mark.parametrize(("error", "words"), ERRORS)
+def test_whatever_goes_wrong_is_one_sentence_and_nothing_is_written(
+    inet, monkeypatch, error, words
+):
+    def fail(*_):
+        raise error
+
+    monkeypatch.setattr(loxodrome, "web", fail)
+    result = inet("web", "--profile=vase", *ANGLES, "-m", 12, "-o", "a.obj")
+    assert refused(result) and result[2] == f"inet: {words}\n"
+    assert not any(Path().iterdir())
+
+
+def test_explore_serves_a_sound_surface_and_tells_the_address(inet, monkeypatch):
+    served, shown = [], []
+
+    def serve(surface, path, port, ready):
+        served.append((surface, path, port))
+        ready("http://127.0.0.1:8123/")
+
+    module = types.SimpleNamespace(serve=serve)
+    monkeypatch.setattr("inetlib.explorer.notebook.server", lambda: module)
+    monkeypatch.setattr(cli.webbrowser, "open", shown.append)
+    V, F = examples.wavy_roof(15)
+    io.write("roof.obj", V, F)
+    said = "Isogonal nets: http://127.0.0.1:8123/ (Ctrl-C ends it)\n"
+    assert inet("explore") == (0, said, "") and served.pop() == (None, None, None) and not shown
+    assert inet("explore", "roof.obj", "--port", 8123, "--open") == (0, said, "")
+    (surface, *more) = served.pop()
+    assert np.array_equal(surface.V, V) and more == ["roof.obj", 8123]
+    assert shown == ["http://127.0.0.1:8123/"]
+    io.write("holes.obj", V, np.delete(F, [68, 148, 228], axis=0))
+    assert refused(inet("explore", "holes.obj"), "boundary loops") and not served
+
+
+FAKE = """
+import sys
+def tqdm(**options):
+    return options
+def main(names):
+    print(names, tqdm(total=3))
+    return 0
+"""
+
+
+def test_figures_runs_each_notebook_once_and_quietly_on_request(inet, monkeypatch, tmp_path):
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "redraw.py").write_text(FAKE)
+    (tmp_path / "notebooks").mkdir()
+    for name, tags in (("1_one", ["fig01", "fig02"]), ("2_two", [])):
+        notebook = {"cells": [{"metadata": {"tags": tags}}, {"metadata": {}}]}
+        (tmp_path / "notebooks" / f"{name}.ipynb").write_text(json.dumps(notebook))
+    monkeypatch.setattr(cli, "ROOT", tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    for words, names in ((["2", "fig02", "1"], ["2_two", "1_one"]), ([], [])):
+        for quiet in (False, True):
+            monkeypatch.delitem(sys.modules, "redraw", raising=False)
+            code, out, err = inet("figures", *words, *["--quiet"] * quiet)
+            assert (code, err) == (0, "")
+            assert out == ("" if quiet else f"{names} {{'disable': True, 'total': 3}}\n")
+    monkeypatch.delitem(sys.modules, "redraw")
 
 
 @pytest.mark.parametrize("suffix", io.PACKAGES)

@@ -110,6 +110,28 @@ def test_every_quad_is_inside_and_two_rooms_with_a_narrow_door_give_one_sound_pi
     assert len(mesh.boundary_loops(net.Q)) == 1  # raises where two quads touch at a vertex
 
 
+def test_no_two_quads_touch_at_a_vertex_only_where_a_surface_is_cracked():
+    """Two cracks that end in the middles of two quads which touch at one vertex."""
+    left = [(0, 4.83), (3.55, 4.5), (0, 4.79)]
+    right = [(8, 3.17), (4.45, 3.5), (8, 3.21)]
+    V = np.array([(0, 0), (8, 0), *right, (8, 8), (0, 8), *left]) @ np.eye(2, 3)
+    surface = V, repair.triangulate(V, [list(range(len(V)))])
+    for direction in np.linspace(0, 1.5, 6):
+        Q = cover(surface, (90, 90), size=1.0, direction=direction, optimise=False).Q
+        sides = np.sort(np.concatenate([Q[:, [k, k - 1]] for k in range(4)]), axis=1)
+        sides, often = np.unique(sides, axis=0, return_counts=True)
+        assert len(Q) > 20 and np.bincount(sides[often == 1].ravel()).max() == 2
+        assert not repair.components(len(Q), *mesh.pairs(Q).T // 4).any()
+
+
+def test_a_surface_so_rough_that_both_maps_flip_triangles_is_flattened_and_says_so():
+    V, F = examples.wavy_roof(10)
+    V = V + 0.1 * np.random.default_rng(0).normal(size=V.shape) * [1, 1, 10]
+    flat = flatten.flatten(*repair.clean(V, F)[:3])
+    a, b, c = flat.z[flat.F].T
+    assert flat.flips == np.count_nonzero(np.imag(np.conj(b - a) * (c - a)) <= 0) > 0
+
+
 def test_large_coordinates_one_quad_extreme_angles_and_a_steep_bump():
     V, Q = sheet(15, 15, lambda u, v: (u, v, 0.3 * u * v))
     V = 1e4 * V + 1e5

@@ -6,6 +6,7 @@ import io as streams
 import re
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import threading
@@ -459,6 +460,24 @@ async def test_a_planar_net_is_seen_from_above_and_a_grown_one_is_fitted_again(a
     await until(lambda: camera.parallel_scale > 1.5 * scale)
 
 
+async def test_a_net_that_grows_out_of_the_view_is_fitted_again_from_where_it_was_seen(app):
+    await arrived(app, "?kind=revolution&m=12&n=2")
+    app.look("from_side")
+    camera = app.scene.plotter.camera
+
+    def seen():
+        towards = np.subtract(camera.position, camera.focal_point)
+        return towards / np.linalg.norm(towards), camera.parallel_scale
+
+    (direction, scale), before = seen(), app.state.numbers["quads"]
+    await change(app, n=12)
+    await until(lambda: app.state.numbers["quads"] != before)
+    there, wider = seen()
+    assert np.allclose(there, direction) and wider > 1.5 * scale
+    V = app.session.V - np.array(camera.focal_point)
+    assert np.abs(V @ camera.up).max() < wider
+
+
 @asynccontextmanager
 async def visited(serve, **options):
     """(a door that is open, a client whose addresses are its)."""
@@ -655,6 +674,43 @@ async def test_every_connection_has_an_app_of_its_own_that_ends_with_it(serve, r
         for one in sockets[1:]:
             await one.receive()
             assert one.closed
+
+
+def packed(number, method, *args):
+    """A call as trame's page sends it: a header (message, offset, size) before it."""
+    import msgpack  # comes with trame
+
+    call = {"wslink": "1.0", "id": number, "method": method, "args": list(args), "kwargs": {}}
+    body = msgpack.packb(call)
+    return struct.pack("<III", 1, 0, len(body)) + body
+
+
+async def answer(socket):
+    """What comes back to a call: other messages (the state, the pictures) are passed over."""
+    import msgpack
+
+    whole = b""
+    while True:
+        message = await socket.receive_bytes(timeout=LIMIT)
+        offset, size = struct.unpack("<II", message[4:12])
+        whole = (whole if offset else b"") + message[12:]
+        found = msgpack.unpackb(whole) if len(whole) == size else {}
+        if not found.get("id", "publish:").startswith("publish:"):
+            return found
+
+
+async def test_a_page_that_says_hello_is_answered_and_nobody_else(house):
+    _, client = house
+    async with client.ws_connect("/ws") as socket:
+        await socket.send_bytes(packed("rpc:c0:0", "trame.state.get"))
+        assert "Unauthorized" in (await answer(socket))["error"]["message"]
+        await socket.send_bytes(packed("system:c0:0", "wslink.hello", {"secret": "guessed"}))
+        assert "Authentication failed" in (await answer(socket))["error"]["message"]
+        await socket.send_bytes(packed("system:c0:1", "wslink.hello", {"secret": "wslink-secret"}))
+        found = await answer(socket)
+        assert found["id"] == "system:c0:1" and found["result"]["clientID"]
+        await socket.send_bytes(packed("rpc:c0:1", "trame.state.get"))
+        assert (await answer(socket))["result"]["state"]["kind"] == Choice().kind
 
 
 TABS = """

@@ -73,6 +73,17 @@ def test_saddles_and_canopies_are_flattened_without_a_branch_point(rings, sides,
     assert net.report.covered > 0.6 and net.report.surface_flips == 0
 
 
+@pytest.mark.parametrize(
+    ("rings", "sides", "height", "pair", "count"),
+    [(2, 8, 0.7, (50, 110), 40), (3, 10, 0.9, (60, 60), 100), (4, 12, 0.9, (75, 50), 100)],
+)
+def test_on_coarse_facets_the_last_digits_are_found_in_space(rings, sides, height, pair, count):
+    pair = np.radians(pair)
+    net = design.cover(*polar(rings, sides, lambda z: height * np.real(z**4)), *pair, count=count)
+    assert net.report.converged and judged(net.V, net.Q, pair) == 0
+    assert 0 < net.report.distance_max < 1e-3
+
+
 def egg(z):
     """An egg on its side, open at the far end: its map to the plane has very different scales."""
     polar = 2.6 * np.abs(z)

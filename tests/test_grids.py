@@ -166,6 +166,14 @@ def test_a_refinement_that_leads_nowhere_is_tried_again_and_reported(monkeypatch
     assert 1e-6 < off < 0.1  # the splines through the coarse net, no worse
 
 
+def test_a_step_to_no_net_is_not_taken(monkeypatch):
+    monkeypatch.setattr(sparse, "step", lambda A, f: (np.full((3, 1, 1), np.inf), 0))
+    result = grids.optimize(freeform(40, 40), 1.0, 1.2, coarse=12)
+    assert not result.converged and np.isfinite(result.V).all()
+    assert "40 x 40 quads in 0 steps, where the refinement went astray" in result.message
+    assert measure.deviations(result.V, mesh.grid_quads(40, 40), 1.0, 1.2).max() < 0.1
+
+
 def test_bad_input_is_refused():
     X = freeform(5, 5)
     for changes, words in [

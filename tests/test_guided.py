@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from inetlib import conformal, measure, mesh, parallelogram, solver
-from inetlib.solver import guided
+from inetlib import conformal, measure, mesh, parallelogram, solver, surfaces
+from inetlib.solver import guided, problem
 from inetlib.solver.goal import aim
 
 RIGHT, SIXTY = np.pi / 2, np.pi / 3
@@ -96,3 +96,32 @@ def test_steps_depend_on_neither_the_scale_nor_the_linear_solver_and_fixed_verti
     np.testing.assert_array_equal(one.V[fixed], V[fixed])
     np.testing.assert_array_equal(other.V[fixed], V[fixed])
     assert np.abs(one.V - V).max() > 1e-3
+
+
+def test_a_caller_stops_guided_projection_after_a_step():
+    V, Q = patch(5)
+    seen = []
+
+    def callback(step, W):
+        seen.append(step.kind)
+        return len(seen) < 3
+
+    found = solver.optimize(V, Q, RIGHT, formulation="paper, splu", callback=callback)
+    assert seen == ["guided"] * 3 and len(found.history) == 4
+    assert found.message.startswith("stopped by the caller after 3 steps")
+
+
+def test_a_run_that_overflows_ends_with_the_best_net_so_far():
+    """Weights whose squares are infinite, and a net far too small for its formulation."""
+    V, Q = patch(4)
+    heavy = problem.Weights(fairness=1e300)
+    found = solver.optimize(V, Q, 1.2, 1.1, formulation="paper, splu", via="jump", weights=heavy)
+    assert not found.converged and len(found.history) < 17 + 1
+    assert found.message.startswith(f"not converged in {len(found.history) - 1} steps")
+    assert np.isfinite(found.V).all() and measure.quality(found.V, Q).flips == 0
+    V, Q = surfaces.freeform_patch(4, 4)
+    tiny = {"formulation": "ratio", "residual": "quadratic", "via": "jump"}
+    found = solver.optimize(1e-80 * V, Q, 1e-6, 1.1, **tiny)
+    assert not found.converged and np.isfinite(found.V).all()
+    off = measure.deviations(found.V, Q, 1e-6, 1.1).max()
+    assert min(step.deviation for step in found.history) == pytest.approx(off)

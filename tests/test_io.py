@@ -3,6 +3,7 @@
 import json
 import struct
 import warnings
+from pathlib import Path
 
 import igl
 import numpy as np
@@ -226,6 +227,32 @@ def test_broken_glb_files_are_refused(tmp_path):
     bad(glb(triangle_scene(), b"\xff" * 36), "usable number")
 
 
+def test_broken_gltf_scenes_are_refused_and_matrices_and_files_beside_are_read(tmp_path):
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], dtype="<f4").tobytes()
+
+    def scene(**part):
+        changed = triangle_scene()
+        changed["meshes"][0]["primitives"][0] |= part
+        return changed
+
+    far = scene(indices=1)
+    far["accessors"].append({"bufferView": 1, "componentType": 5121, "count": 3})
+    far["bufferViews"].append({"byteOffset": 36})
+    for broken, words in (
+        (scene(mode=1), "the file has no faces"),
+        (far, "there is no vertex 7, only 3"),
+        (triangle_scene(count=-1), "it promises -1 numbers"),
+        (triangle_scene(count=10**12), "it promises 1000000000000 numbers"),
+    ):
+        refused(put(tmp_path, "a.glb", glb(broken, points + bytes([0, 1, 7, 0]))), words)
+    moved = triangle_scene()  # twice the size, then two along x, three along y, four along z
+    moved["nodes"] = [{"mesh": 0, "matrix": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 2, 3, 4, 1]}]
+    moved["buffers"] = [{"uri": "the%20points.bin"}]
+    put(tmp_path, "the points.bin", points)
+    V, F = io.read(put(tmp_path, "b.gltf", json.dumps(moved)))
+    assert V[F[0]].tolist() == [[2, -4, 3], [4, -4, 3], [2, -4, 5]]  # y up becomes z up
+
+
 def test_dxf_passes_ezdxf_audit_and_keeps_all(tmp_path, web):
     ezdxf = package("ezdxf")
     V, Q, polygon = web
@@ -270,6 +297,14 @@ def test_3dm_keeps_quads_and_double_precision(tmp_path, web):
         for line, curve in zip(found[name], family, strict=True):
             points = [line.Point(k) for k in range(line.PointCount)]
             assert np.array_equal([[p.X, p.Y, p.Z] for p in points], V[curve])
+
+
+def test_a_rhino_file_without_a_mesh_says_what_to_do(tmp_path):
+    rhino = package("rhino3dm")
+    model = rhino.File3dm()
+    model.Objects.AddPoint(1, 2, 3)
+    assert model.Write(str(tmp_path / "p.3dm"), 7)
+    refused(tmp_path / "p.3dm", "holds no mesh: mesh its surfaces first")
 
 
 @pytest.mark.parametrize("suffix", list(TEXT))
@@ -405,6 +440,36 @@ def test_bad_vtp_files_are_refused_in_silence(tmp_path, web, capfd):
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize(
+    ("suffix", "library", "writer", "answer"),
+    [(".vtp", "pyvista", "PolyData.save", None), (".3dm", "rhino3dm", "File3dm.Write", False)],
+)
+def test_what_a_library_could_not_write_is_told(
+    tmp_path, web, monkeypatch, suffix, library, writer, answer
+):
+    """VTK and Rhino raise no error on a full disk."""
+
+    def half(self, path, *version):
+        Path(path).write_bytes(b"<VTKFile")
+        return answer
+
+    package(library)
+    monkeypatch.setattr(f"{library}.{writer}", half)
+    with pytest.raises(OSError, match=f"could not write .*{suffix}$"):
+        io.write(tmp_path / f"n{suffix}", *web[:2])
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_place_without_permission_is_told_before_the_work(tmp_path, web, monkeypatch):
+    (tmp_path / "old.obj").touch()
+    asked = []
+    monkeypatch.setattr(io.os, "access", lambda path, mode: asked.append(path))
+    for name, place in (("old.obj", tmp_path / "old.obj"), ("new.obj", tmp_path)):
+        with pytest.raises(PermissionError, match=f"{name}: no permission to write there"):
+            io.check_output(tmp_path / name, force=True)
+        assert asked.pop() == place
+
+
 def test_nothing_is_overwritten_without_force(tmp_path, web):
     path = put(tmp_path, "n.obj", "precious")
     with pytest.raises(FileExistsError, match="exists already"):
@@ -426,6 +491,7 @@ def test_nothing_is_overwritten_without_force(tmp_path, web):
         ("n.obj", {"curves": mesh.Families([[0, 999]], [], [], [])}, "names vertex 999"),
         ("n.obj", {"curves": mesh.Families([np.zeros((3, 3))], [], [], [])}, "indices are wanted"),
         ("n.obj", {"polygons": [[0, 1, -1]]}, "names vertex -1"),
+        ("n.glb", {"up": "y"}, "y is upwards in GLB files anyway, leave `up` as it is"),
     ],
 )
 def test_what_cannot_be_written_is_refused(tmp_path, web, name, more, words):

@@ -85,10 +85,13 @@ def test_whole_exact_webs_reach_the_end_of_the_meridian(profile, degrees):
     assert surfaces.mercator(profile)[0](profile.stop) / step - net.rows < 1.1
 
 
-@pytest.mark.parametrize("name", ["sphere", "torus", "cone"])
-@pytest.mark.parametrize("degrees", [(60, 45), (120, 60)])
-def test_the_exact_ring_is_the_lowest_parallel_that_carries_such_quads(name, degrees):
-    profile, m, (theta, theta0) = SURFACES[name], 12, np.array(degrees) * DEG
+RIPPLED = Profile(lambda t: 1 + 0.2 * np.sin(25 * t), lambda t: 1.0 * t, 0.0, 2.0)
+RINGS = [(SURFACES[k], 12, x) for k in ("sphere", "torus", "cone") for x in ((60, 45), (120, 60))]
+
+
+@pytest.mark.parametrize(("profile", "m", "degrees"), [*RINGS, (RIPPLED, 6, (150, 40))])
+def test_the_exact_ring_is_the_lowest_parallel_that_carries_such_quads(profile, m, degrees):
+    theta, theta0 = np.array(degrees) * DEG
     net = loxodrome.web(profile, theta, theta0, m, n=1)
     low, high = net.t
     t = low + (high - low) * np.linspace(0.02, 0.95, 94)[:, None]
@@ -333,6 +336,7 @@ def test_closings_fulfil_the_closing_condition_find_a_closed_web_again_and_tie_b
             assert [c[:3] for c in found] == [c[:3] for c in known]
 
 
+THIN = Profile(lambda t: 1e-170 + 0 * t, lambda t: 1.0 * t, 0, 1)  # its squares are 0
 METHODS = ["exact", "smooth", "paper"]
 BAD = [0, np.pi, -1.0, 60.0, np.nan, np.inf]
 GLOBE = surfaces.sphere_profile(start=-np.pi / 2, stop=np.pi / 2 + 0.1)
@@ -354,7 +358,10 @@ WRONG = [
     (loxodrome.loxodrome, (SPHERE, 1, np.nan), "angle = nan"),
     (loxodrome.loxodrome, (SPHERE, 1, 0, 1), "samples = 1"),
     (loxodrome.closings, (2, 1, 1, 1, 2), "limit = 2"),
+    (loxodrome.web, (THIN, 1, 1, 12, 2), "not one row of 12 quads.*no such quad stands on t = 0"),
     (loxodrome.torus_web, (2, 1.9, 4, 3, 40), "theta|torus"),
+    (loxodrome.torus_web, (2.9, 0.9, 5, 3, -11), "shift = -11: the rows do not fit on the torus"),
+    (loxodrome.torus_web, (1.7, 1.1, 11, 3, -10), "no closed web .*: take more quads"),
     *((loxodrome.torus_web, (2, 1, *turn), "whole number") for turn in TURNS),
     *((loxodrome.torus_web, (*radii, 9, 9, 1), "major") for radii in TORI),
     *((loxodrome.closings, (*radii, 1, 1), "major") for radii in TORI),

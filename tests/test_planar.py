@@ -232,11 +232,23 @@ HELD = {"handles": ([1, 2], [0, 1])}
         (HELD | {"Q": np.concatenate([GRID, GRID + 20])}, "2 separate parts"),
         (HELD | {"Q": GRID + 1}, "vertex 0 belongs to no face"),
         ({"Q": TORUS, "start": np.exp(1j * np.arange(30))}, "collapses"),
+        ({"Q": TORUS, "boundary": CIRCLE}, "no boundary to lay along an outline"),
     ],
 )
 def test_bad_input_is_named(given, words):
     with pytest.raises(ValueError, match=words):
         planar.planar_net(**{"Q": GRID, "theta": T, "theta0": T0} | given)
+
+
+def test_a_net_with_a_face_that_collapses_is_refused_by_name():
+    z = conformal.sheared_grid(T, T0, 4, 3)
+    _, Q = conformal.quads(z)
+    z = (z.ravel() - z.ravel()[Q[5]].mean()) ** 2  # exact images of a grid, twice around face 5
+    d1, d2 = z[Q[:, 2]] - z[Q[:, 0]], z[Q[:, 3]] - z[Q[:, 1]]
+    assert np.abs(d2 / d1 - (d2 / d1)[0])[np.arange(len(Q)) != 5].max() < 1e-9
+    assert abs(d1[5]) < 1e-12 < np.abs(d1).min(where=np.arange(len(Q)) != 5, initial=1)
+    with pytest.raises(ValueError, match="the net collapses at face 5: ask for less"):
+        planar.planar_net(Q, T, T0, start=z, smooth=0)
 
 
 Z = sympy.Symbol("z")

@@ -345,9 +345,12 @@ def test_feet_are_orthogonal_and_the_nearest_of_all(name):
     assert (near - far).max() < 1e-2
 
 
-def test_a_surface_that_is_not_finite_beyond_its_domain_ends_there():
+@pytest.mark.parametrize("raises", [False, True])
+def test_a_surface_that_is_not_finite_or_raises_beyond_its_domain_ends_there(raises):
     def saddle(u, v):
         inside = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1)
+        if raises and not inside.all():
+            raise ValueError("u and v from 0 to 1 are wanted")
         return np.where(inside[..., None], np.stack([u, v, u * u - v * v], axis=-1), np.nan)
 
     P = RNG.uniform(-0.3, 1.3, (400, 3)) * [1, 1, 0.5]

@@ -4,7 +4,7 @@ import igl
 import numpy as np
 import pytest
 
-from inetlib import examples, mesh, repair
+from inetlib import examples, loxodrome, mesh, repair
 
 
 def sheet(n, m, point):
@@ -212,3 +212,19 @@ def test_ears_of_equal_length_are_cut_in_order(sides):
         for noise in np.random.default_rng(0).standard_normal((4, *V.shape))
     ]
     assert all(np.array_equal(T, cuts[0]) for T in cuts)
+
+
+def test_a_net_that_was_cut_open_keeps_its_duplicates_and_says_so():
+    V, Q = sheet(8, 6, lambda u, v: polar(3 + np.cos(TAU * v), TAU * u, np.sin(TAU * v)))
+    W, R, _, said = repair.welded(V, Q)
+    assert W is V and R is Q
+    assert said == ["duplicate vertices were not merged: a cut would be closed"]
+    V, Q = sheet(8, 6, lambda u, v: polar(1, TAU * u, v))  # a tube: one seam
+    W, R, _, said = repair.welded(V, Q)
+    assert len(W) < len(V) and len(mesh.boundary_loops(R)) == 2 and "merged: 7" in said[0]
+
+
+def test_a_closed_net_without_duplicates_is_left_alone():
+    net = loxodrome.torus_web(3, 1, 12, 6, 1)
+    V, Q, polygons, said = repair.welded(net.V, net.Q)
+    assert V is net.V and Q is net.Q and not polygons and said == []

@@ -6,6 +6,7 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 from test_guided import patch
+from test_measure import sheared
 
 import inetlib
 from inetlib import loxodrome, measure, mesh, parallelogram, reference, solver
@@ -337,6 +338,15 @@ def test_a_caller_can_watch_stop_and_limit_and_sees_a_bar_on_request(capsys):
     assert "step" in capsys.readouterr().err
 
 
+def test_angles_near_zero_end_in_words_not_in_a_singular_matrix():
+    V, Q = sheared(2, 2, v=(0, 1, 0))
+    found = solver.optimize(V, Q, 1.1e-6, 1.0, residual="quadratic")
+    assert not found.converged and "not converged" in found.message
+    for bad in (1e-7, np.pi - 1e-7):
+        with pytest.raises(ValueError, match="1e-06 or more away from 0 and pi"):
+            solver.optimize(V, Q, bad)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -350,6 +360,9 @@ def test_a_caller_can_watch_stop_and_limit_and_sees_a_bar_on_request(capsys):
         ({"weights": problem.Weights(boundary=np.ones(3))}, "boundary has the shape"),
         ({"reference": reference.mesh(patch(4)[0] + 10, QUADS)}, "far away"),
         ({"on_surface": True}, "needs a reference"),
+        ({"on_surface": True, "formulation": "paper"}, 'need formulation="ratio"'),
+        ({"coupled": True, "formulation": "paper"}, 'need formulation="ratio"'),
+        ({"on_surface": True, "coupled": True}, "no coupled steps: give one of the two"),
         ({"formulation": "magic"}, "ratio, paper"),
         ({"residual": "cubic"}, "log, quadratic"),
         ({"via": "moon"}, "squares"),

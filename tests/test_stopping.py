@@ -3,6 +3,7 @@
 Moments are not waited for but made: the process raises the signal itself, when it loads a
 module, opens a file or starts another process (audit events), or in a function put in place."""
 
+import ctypes
 import os
 import re
 import shutil
@@ -10,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+import types
 from pathlib import Path
 
 import nbformat
@@ -120,6 +122,22 @@ def test_what_a_killed_process_left_is_removed_by_the_next(tmp_path):
         path.touch()
     io.write(tmp_path / "net.obj", *examples.wavy_roof(2))
     assert sorted(os.listdir(tmp_path)) == sorted([alive.name, other.name, "net.obj"])
+
+
+def test_on_windows_processes_are_asked_for_and_not_ended(tmp_path, monkeypatch):
+    closed = []
+    kernel = types.SimpleNamespace(
+        OpenProcess=lambda right, inherit, pid: 1000 + pid if pid == 12 else 0,
+        CloseHandle=lambda handle: closed.append(handle) or 1,
+    )
+    windll = types.SimpleNamespace(kernel32=kernel)
+    monkeypatch.setattr(ctypes, "windll", windll, raising=False)
+    windows = vars(os) | {"name": "nt", "kill": lambda *_: pytest.fail("os.kill ends processes")}
+    monkeypatch.setattr(files, "os", types.SimpleNamespace(**windows))
+    for name in (".new-12-0a.obj", ".new-13-0a.obj"):
+        (tmp_path / name).touch()
+    files.sweep(tmp_path)
+    assert os.listdir(tmp_path) == [".new-12-0a.obj"] and closed == [1012]
 
 
 MOMENTS = {

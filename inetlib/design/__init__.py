@@ -134,7 +134,7 @@ def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
     for options in ATTEMPTS:
         result = solver.optimize(layer.V, layer.Q, theta, theta0, **common, **options)
         close = not result.converged and _deviation(result) < FINE
-        if close and options is not POLISH and not stopped:  # facets keep the last digits off
+        if close and not stopped:  # facets keep the last digits off
             result = solver.optimize(result.V, layer.Q, theta, theta0, **common, **POLISH)
         tried.append((_faults(result, layer.Q, area, goal), result))
         if stopped or tried[-1][0] <= (False, False, AWAY):

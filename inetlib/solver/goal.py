@@ -14,6 +14,7 @@ from ..parallelogram import check_angle, check_positive
 
 ANGLES = "theta", "theta0"
 INSIDE = 0.99  # of the range of Eq. (4), for a start
+CLOSE = 1e-6  # radians: angles closer to 0 or pi are lost in rounding
 ALIKE = 1e-9  # radians: two given angles as close as this are meant to be the same
 
 
@@ -46,6 +47,8 @@ def aim(
         if x is not None:
             check = check_angle if name in ANGLES else check_positive
             known[name] = float(check(name, x))
+            if name in ANGLES and not CLOSE <= known[name] <= np.pi - CLOSE:
+                raise ValueError(f"{name} = {x} rad: {CLOSE} or more away from 0 and pi is wanted")
     if equal:
         return _equal(known)
     if len(known) > 2:

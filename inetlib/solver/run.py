@@ -306,10 +306,13 @@ def ratio(
             return
         if goal is not before:
             before, s = goal, nearest(goal, V, given.Q)
-        if coupled:
-            d, ds = coupled_step(given, V, goal, s, coupled if kind == "shape" else LOOSE)
-        else:
-            d, ds = (shape_step if kind == "shape" else angle_step)(given, V, goal, s)
+        try:
+            if coupled:
+                d, ds = coupled_step(given, V, goal, s, coupled if kind == "shape" else LOOSE)
+            else:
+                d, ds = (shape_step if kind == "shape" else angle_step)(given, V, goal, s)
+        except RuntimeError:  # SciPy's word for a singular matrix
+            return
         parts = (t for t in PARTS if is_admissible(*np.exp(logs(goal, s + t * ds)[0])))
         part = next(parts, 0.0)
         V, s = V + part * d, s + part * ds
