@@ -16,6 +16,7 @@ from . import mesh, raster
 COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 DARK = "#6f8fbf"  # inscribed parallelograms in space
+SINGULAR = "#7b2d8b"  # faces that are no quads
 DEGREE = float(np.pi / 180)
 
 

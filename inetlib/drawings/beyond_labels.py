@@ -7,7 +7,6 @@ from ..plot import DEGREE
 from . import drawn, patches
 from .revolution import SLOTS
 
-FACE = "#7b2d8b"  # the singular face
 SEAM = "#d0006f"
 ROWS = [[f"{letter}{k}" for k in range(6)] for letter in "ABC"]
 MOSAIC = [*ROWS, *[["D"] * 3 + ["E"] * 3] * 2]
@@ -81,7 +80,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
     texts = {"D": "around an octagon", "E": "on a polar cap"}
     for letter, (_, Q, polygon, result) in nets(theta, theta0).items():
         V = data[letter] = result.V
-        patches.surface(axes[letter], view, V, Q, polygons=[(V[polygon], FACE)])
+        patches.surface(axes[letter], view, V, Q, polygons=[(V[polygon], plot.SINGULAR)])
         plot.panel(axes[letter], letter, f"{texts[letter]}: ${plot.degrees(theta, theta0)}$")
         exact.append((V, Q, result.theta, result.theta0))
         claims |= patches.claims(letter, result, Q)
@@ -97,7 +96,7 @@ def _small(ax, V, Q, polygon):
         points = plot.plane(V)
         plot.polygons(ax, points, Q, "#f0f2f5")
         if polygon is not None:
-            plot.polygons(ax, points, polygon[None], FACE)
+            plot.polygons(ax, points, polygon[None], plot.SINGULAR)
         for family, pairs in edges.items():
             plot.curves(ax, points[pairs], plot.COLOURS[family], 1.0)
     else:

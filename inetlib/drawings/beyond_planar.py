@@ -29,7 +29,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, tip=80 * DEGREE, pull=0.35):
     near = np.isin(Q3, inside).all(axis=1)
     _net(axes["D"], "D", "the middle of C", three.V, Q3[near], (), 1.2)
     for name in "CD":
-        plot.polygons(axes[name], three.V, polygon[None], plot.GREY, plot.INK, 0.8)
+        plot.polygons(axes[name], three.V, polygon[None], plot.SINGULAR, plot.INK, 0.8)
     found = {"leaf": (one, Q1, *equal), "annulus": (two, Q2, *equal)}
     found["hexagon"] = three, Q3, theta, theta0
     data, claims = {name: net.V for name, (net, *_) in found.items()}, {}

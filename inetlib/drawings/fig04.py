@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from .. import measure, parallelogram, plot
+from .. import measure, parallelogram, plot, raster
 from ..plot import COLOURS, DEGREE, INK
 from . import drawn
 
 GAP = np.array([0.3, -0.5, 0.7])  # from the midpoint of v2 v4 to that of v1 v3
 FACE = np.array([[0, 1, 2, 3]])
-LEFT, SIXTY, VIEW = (80 * DEGREE, 55 * DEGREE), 60 * DEGREE, (-100 * DEGREE, 58 * DEGREE)
+GROUND = -0.75  # height of the ground; the parallelogram is at 0
+LEFT, SIXTY, VIEW = (80 * DEGREE, 55 * DEGREE), 60 * DEGREE, (-100 * DEGREE, 42 * DEGREE)
 
 
 @drawn("theta", "theta0", "alone", "azimuth", "elevation")
@@ -17,7 +18,7 @@ def draw(theta=LEFT[0], theta0=LEFT[1], alone=SIXTY, azimuth=VIEW[0], elevation=
 
     theta, theta0: angles of the left quad; alone: both angles of the right one; azimuth,
     elevation: the camera; all in radians.  Paper: Fig. 4."""
-    figure, axes = plot.canvas([["A", "B"]], 7.2, 2.45)
+    figure, axes = plot.canvas([["A", "B"]], 7.2, 2.9)
     view = plot.camera(azimuth, elevation)
     data, nets, claims = {}, [], {}
     one, two, both = (plot.degrees(angle) for angle in (theta, theta0, alone))
@@ -45,16 +46,27 @@ def _quad(theta, theta0):
 
 
 def _panel(ax, view, V):
+    """The quad over the ground with its shadow; what lies behind the parallelogram is dashed."""
     edges = (V + np.roll(V, -1, axis=0)) / 2  # midpoints of v1 v2, v2 v3, v3 v4, v4 v1
     flat, middle = view(V)[0], view(edges)[0]
-    plot.vector(ax, flat[1], flat[3], COLOURS["d2"], zorder=1)  # d2 runs below ...
-    plot.polygons(ax, middle, [[0, 1, 2, 3]], plot.FILL, INK, 1.2, alpha=0.6, zorder=2)
-    plot.vector(ax, middle[0], middle[2], COLOURS["u"], zorder=3)
-    plot.vector(ax, middle[1], middle[3], COLOURS["v"], zorder=3)
-    over = flat[0] + np.array([[0.15], [0.9]]) * (flat[2] - flat[0])
-    plot.curves(ax, [over], "white", 4.5, zorder=4)
-    plot.vector(ax, flat[0], flat[2], COLOURS["d1"], zorder=4)  # ... and d1 above the rest
-    plot.curves(ax, [flat[[0, 1, 2, 3, 0]]], INK, 1.5, zorder=5)
+    fallen = np.array([1, 1, 0])
+    shadow = [x * fallen + [0, 0, GROUND] for x in (V, edges)]
+    low, high = shadow[0].min(axis=0) - 0.25, shadow[0].max(axis=0) + 0.25
+    ground = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]])
+    ground = np.column_stack([ground, np.full(4, GROUND)])
+    layers = [(ground, FACE, "#f4f5f7"), (shadow[1], FACE, "#cfd4da"), (edges, FACE, "#b5c9e6")]
+    ring, cut = [0, 1, 2, 3, 0], np.linspace(0, 1, 60)[:, None]
+    lines = [(shadow[0][ring], "#b4bac2", 0.9), (V[ring], INK, 1.5), (edges[ring], INK, 0.8)]
+    lines += [(np.stack(pair), plot.GREY, 0.5) for pair in zip(V, shadow[0], strict=True)]
+    scene = plot.scene(ax, view, layers, lines, lift=0.001)
+    for name, (start, end) in {"d2": V[[1, 3]], "d1": V[[0, 2]]}.items():
+        way = (1 - cut) * start + cut * end
+        seen = raster.in_front(scene, view, way, 3)
+        plot.curves(ax, [view(run)[0] for run in seen], COLOURS[name], 1.6, zorder=4)
+        plot.curves(ax, [view(way)[0]], COLOURS[name], 0.9, (0, (2, 2)), zorder=3)
+        plot.vector(ax, *view(np.stack([start + 0.9 * (end - start), end]))[0], COLOURS[name])
+    plot.vector(ax, middle[0], middle[2], COLOURS["u"])
+    plot.vector(ax, middle[1], middle[3], COLOURS["v"])
     ax.plot(*flat.T, "o", color=INK, ms=3.5, zorder=6)
     d1, d2, m13, m24 = (x[0] for x in measure.vectors(V, FACE))
     plot.angle(ax, edges[0], d1, d2, 0.26, camera=view)

@@ -12,7 +12,7 @@ SHAPES = {"A": "rhombuses", "B": "rectangles", "C": r"$\theta$-parallelograms", 
 
 
 @drawn("angle", "azimuth", "elevation")
-def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=20 * DEGREE):
+def draw(angle=60 * DEGREE, cells=10, size=1.5, azimuth=-90 * DEGREE, elevation=20 * DEGREE):
     """Four isogonal nets on a sphere with their black quads, and one parallelogram of each.
 
     angle: radians, theta in A, theta0 in B, both in C; cells: about how many faces each way;
@@ -26,7 +26,7 @@ def draw(angle=60 * DEGREE, cells=6, size=1.5, azimuth=-90 * DEGREE, elevation=2
         z = _domain(target, cells, size)
         domain, Q = conformal.quads(z)
         V = _sphere(z)
-        plot.board(axes[name], view, V, Q, plot.families(V, Q, {"u": 0.9, "v": 0.9}))
+        plot.board(axes[name], view, V, Q, plot.families(V, Q, {"u": 0.6, "v": 0.6}))
         _parallelogram(axes[name.lower()], parallelogram.rho(lam, mu), target)
         plot.panel(axes[name], name, TITLES[name])
         plot.text(axes[name.lower()], -0.6j, SHAPES[name], zorder=3, va="top")

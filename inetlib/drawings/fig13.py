@@ -13,7 +13,6 @@ ITERATIONS = 12  # of the paper's formulation
 SIDES, RINGS = 6, 8
 CENTRE, RADIUS = (-0.2, 0.1, -0.25), 0.3
 MARKED = 425  # the vertex whose four faces are enlarged
-HEXAGON = "#7b2d8b"
 
 
 def start(dome=0.45, wave=0.1):
@@ -80,7 +79,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
 def _net(ax, view, V, Q, polygon, colours=patches.EXACT, more=()):
     corners = V[polygon]
     lines = [(np.concatenate([corners, corners[:1]]), plot.INK, 1.0), *more]
-    patches.surface(ax, view, V, Q, colours, lines, [(corners, HEXAGON)])
+    patches.surface(ax, view, V, Q, colours, lines, [(corners, plot.SINGULAR)])
 
 
 def _history(ax, found):

@@ -110,7 +110,7 @@ def svg(one: str, two: str) -> bool:
     if one == two:
         return True
     pictures = [[base64.b64decode(x) for x in INSIDE.findall(s)] for s in (one, two)]
-    if not all(picture(*pair, *PAINTED) for pair in zip(*pictures, strict=False)):
+    if not all(picture(a, b, *PAINTED) for a, b in zip(*pictures, strict=False)):
         return False
     one, two = (INSIDE.sub("", s) for s in (one, two))
     colours = [[list(bytes.fromhex(x[1:])) for x in COLOUR.findall(s)] for s in (one, two)]
