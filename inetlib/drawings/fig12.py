@@ -12,7 +12,7 @@ SETTINGS = {"A": {}, "B": {"theta": RIGHT}, "C": {"theta0": RIGHT}}  # what is n
 SETTINGS |= {"D": {"theta": RIGHT, "theta0": RIGHT}, "E": {"theta": SIXTY, "theta0": SIXTY}}
 ITERATIONS = {"A": 12, "B": 17, "C": 17, "D": 17, "E": 17}  # of the paper's formulation
 TITLES = {
-    "A": "general",
+    "A": "general, with its 4-web",
     "B": r"rectangles, $\mu=1$",
     "C": r"rhombuses, $\lambda=1$",
     "D": r"squares, $\lambda=\mu=1$",
@@ -52,7 +52,10 @@ def draw(m=20, n=20, azimuth=-62 * DEGREE, elevation=42 * DEGREE):
     four = (i * n + j).ravel()  # faces in the middle
     for (name, ax), W in zip(axes.items(), data.values(), strict=True):
         colours = patches.tints(scale, off[name])
-        patches.surface(ax, view, W, Q, colours, [patches.outline(W, Q[four])])
+        lines = [patches.outline(W, Q[four])]
+        if name == "A":
+            lines += plot.families(W, Q, {"d1": 0.4, "d2": 0.4})
+        patches.surface(ax, view, W, Q, colours, lines)
         patches.enlarged(ax, [0, 0, 0.42, 0.33], W, Q, four, colours[four])
     axes["start"].set_title("the start", loc="left")
     patches.bar(axes["start"], scale, [0.5, 0.13, 0.46, 0.035])
