@@ -556,7 +556,7 @@ def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles()
     for W in (V[:, :2], V[:-1], np.where(np.arange(30)[:, None] == 5, np.nan, V), 0 * V):
         with pytest.raises(ValueError):
             Session(net=(W, Q))
-    with pytest.raises(ValueError, match=r"^no net: faces 0 and 20 are oriented against"):
+    with pytest.raises(ValueError, match=r"^no net: the faces at the edge 1-0 are oriented"):
         Session(net=(V, [*Q, [Q[0, 0], Q[0, 1], 28, 29]]))
 
 

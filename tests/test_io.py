@@ -304,7 +304,7 @@ def test_a_rhino_file_without_a_mesh_says_what_to_do(tmp_path):
     model = rhino.File3dm()
     model.Objects.AddPoint(1, 2, 3)
     assert model.Write(str(tmp_path / "p.3dm"), 7)
-    refused(tmp_path / "p.3dm", "holds no mesh: mesh its surfaces first")
+    refused(tmp_path / "p.3dm", "holds no mesh, mesh its surfaces first")
 
 
 @pytest.mark.parametrize("suffix", list(TEXT))

@@ -123,7 +123,7 @@ def write_dxf(
 
 def read_3dm(path: Path) -> tuple[np.ndarray, list]:
     """Points (n, 3) and faces of all meshes of a Rhino file; other objects are passed over."""
-    return _read(READ_3DM, path, "the Rhino file is broken")
+    return _read(READ_3DM, path, "the Rhino file cannot be read")
 
 
 def write_3dm(
