@@ -154,7 +154,7 @@ def families(V, Q, widths):
     return [(V[line], COLOURS[name], w) for name, w in widths.items() for line in found[name]]
 
 
-def board(ax, view, V, Q, lines=(), more=(), fill=DARK, pixels=700):
+def board(ax, view, V, Q, lines=(), more=(), fill=DARK, pixels=1000):
     """A net in space: its inscribed parallelograms over the light surface; see `scene`.
 
     more: further layers below; fill: the colour of the parallelograms, or one of each."""
@@ -164,7 +164,7 @@ def board(ax, view, V, Q, lines=(), more=(), fill=DARK, pixels=700):
     return scene(ax, view, [(V, Q, PALE), *more, (corners, apart, fill)], lines, pixels)
 
 
-def scene(ax, view, layers, lines=(), pixels=700, lift=0.003):
+def scene(ax, view, layers, lines=(), pixels=1000, lift=0.003):
     """Shaded surfaces as a picture, and what is seen of the curves on them as vectors.
 
     view: a `camera`; layers, pixels, lift: of `raster.render`; lines: (points (k, 3), colour,

@@ -155,7 +155,7 @@ class Picture(NamedTuple):
     lift: float  # of a layer over the one below, in pixels
 
 
-def render(view: Callable, layers: Sequence, pixels: int = 700, lift: float = 0.003) -> Picture:
+def render(view: Callable, layers: Sequence, pixels: int = 1000, lift: float = 0.003) -> Picture:
     """The `Picture` of surfaces.
 
     view: a `plot.camera`; layers: (V (n, 3), faces (f, 3 or 4), a colour or one a face), shaded

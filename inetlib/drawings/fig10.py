@@ -55,7 +55,7 @@ def _sphere(ax, view, V, W, Q, curves):
         lines.append((np.stack([on, off]), plot.INK, 0.8))
         plot.curves(ax, [view(np.stack([pole, on]))[0]], plot.INK, 0.6, (0, (3, 2)), zorder=5)
         ax.plot(*view(np.stack([on, off]))[0].T, "o", color=plot.INK, ms=2.2, zorder=6)
-    plot.scene(ax, view, layers, lines, pixels=900)
+    plot.scene(ax, view, layers, lines, pixels=1400)
     north = view(pole)[0]
     ax.plot(*north, "o", color=plot.INK, ms=4, zorder=7)
     plot.text(ax, north + np.array([0.08, 0.06]), "$N$", zorder=7, ha="left")
