@@ -7,9 +7,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import outputs  # tools/outputs.py
 import pytest
+import redraw  # tools/redraw.py
 
 from inetlib import conformal, drawings, mesh, plot, publish, surfaces
+from inetlib.drawings import table1
 
 FIGURES = Path(__file__).resolve().parent.parent / "figures"
 T, T0 = np.radians(60), np.radians(45)
@@ -233,6 +236,27 @@ def test_a_text_is_kept_unless_it_says_something_else(tmp_path):
         publish.save_text(f"{text}\n", path)
         assert path.read_bytes() == f"{kept}\n".encode()
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_showing_writes_nothing_unless_somebody_says_where(draw, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(publish.FOLDER, raising=False)
+    lines = [["12A", *12 * ["-"]]]
+    for colours in (None, 96):
+        picture = publish.show(draw(), colours)
+        assert (picture is None) == (colours is None)
+        table1.show(lines)
+    assert publish.asked() is None and contents(tmp_path) == {}
+    monkeypatch.setenv(publish.FOLDER, str(tmp_path / "figures"))
+    publish.show(draw())
+    assert table1.show(lines).data.count("\n") == 3
+    assert set(contents(tmp_path / "figures")) == FILES | {"table1.md", "table1.csv"}
+
+
+def test_the_kernels_of_redraw_write_into_figures_and_others_nowhere(monkeypatch):
+    monkeypatch.setenv(publish.FOLDER, "somewhere")
+    assert publish.FOLDER not in outputs.environment("own")
+    assert redraw.environment("own")[publish.FOLDER] == str(FIGURES)
 
 
 def test_the_users_settings_change_no_byte(draw, tmp_path):

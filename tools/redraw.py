@@ -121,13 +121,18 @@ def kernel(client, folder):
         )
         try:
             with held():
-                client.start_new_kernel(cwd=str(folder), env=outputs.environment(own))
+                client.start_new_kernel(cwd=str(folder), env=environment(own))
                 ENDS.append(partial(end, client.km.provisioner.process))
             with client.setup_kernel(cleanup_kc=True):
                 yield
         finally:
             while ENDS:
                 ENDS.pop()()
+
+
+def environment(own):
+    """That of a kernel whose drawings go into figures/; own: see `outputs.environment`."""
+    return outputs.environment(own) | {publish.FOLDER: str(ROOT / "figures")}
 
 
 def end(process):

@@ -84,3 +84,12 @@ def save(lines, folder):
     csv.writer(text, lineterminator="\n").writerows([HEADER, *lines])
     publish.save_text(markdown(lines), f"{folder}/table1.md")
     publish.save_text(text.getvalue(), f"{folder}/table1.csv")
+
+
+def show(lines):
+    """The table below a notebook's cell; written too where `publish.asked` says."""
+    from IPython.display import Markdown  # only a notebook needs it
+
+    if folder := publish.asked():
+        save(lines, folder)
+    return Markdown(markdown(lines))
