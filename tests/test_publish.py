@@ -101,7 +101,7 @@ def test_every_figure_with_nets_says_that_none_has_darts_or_which():
         assert len(said) > panels
     with open(FIGURES / "table1.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == 7 * 4  # runs of the paper's formulation that end off their angles, too
+    assert len(rows) == 7 * 5  # runs of the paper's formulation that end off their angles, too
     assert {row["flips, darts"] for row in rows} == {"-", "0, 0"}
 
 
