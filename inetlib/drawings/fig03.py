@@ -11,7 +11,7 @@ from matplotlib.patheffects import withStroke
 
 from .. import conformal, parallelogram, plot
 from ..plot import DEGREE
-from . import deviations, drawn
+from . import drawn, sampled
 
 ROWS = [["A", "B", "C"], ["A'", "B'", "C'"], ["C_1", "C_2", "C_3"]]
 MOSAIC = [row for row, height in zip(ROWS, (3, 5, 5), strict=True) for _ in range(height)]
@@ -168,15 +168,14 @@ def _origin(ax, label):
 
 
 def _claims(angles, nets):
-    """The steps between the rows, and how far the two nets that are not exact are off, degrees."""
+    """The steps between the rows, and how far the two nets under 1/z, not exact, are off."""
     claims = {}
     for name, (theta, theta0) in angles.items():
         _, mu = parallelogram.ratios(theta, theta0)
         claims[f"{name}: h = mu sin(theta0)"] = mu * np.sin(theta0)
     for name in ("A'", "C1"):
-        off = np.degrees(deviations([nets[name]]))
-        for what, x in zip(("theta", "theta0"), off.round(6), strict=True):
-            claims[f"{name}: max deviation of {what}, deg (1/z is not exact)"] = x
+        V, Q, *both = nets[name]
+        claims |= sampled(name, V, Q, both)
     return claims
 
 
