@@ -6,6 +6,7 @@ build one."""
 
 from itertools import pairwise
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import sympy as sp
@@ -532,6 +533,10 @@ def test_e34_one_cell_has_aod_and_cod():
         assert theta != theta0 or abs(d2 @ d2 - d1 @ d1 - 2 * d1 @ d2) > 0.1  # Eq. (13) fails
         slanted = np.diff(conformal.sheared_grid(theta * DEG, theta0 * DEG, 1, 1)[0])[0]
         assert abs(slanted) == pytest.approx(1 / mu)
+    drawing = fig03.draw()
+    plt.close(drawing.figure)
+    edges = [abs(np.diff(drawing.data[name][0])[0]) for name in "BC"]
+    assert edges == pytest.approx([1.931852, 1.618034], abs=1e-6)
 
 
 def test_e35_the_two_constant_angles_are_equal_for_equal_ratios_only():
