@@ -39,7 +39,7 @@ def draw(theta=A[0], theta0=A[1], theta1=B, theta2=C, cells=10):
         _image(axes[name + "'"], name + "'", "under $z^2$", z[name + "'"], _parabolas(z[name]))
     _pattern(axes["C_1"], "C_1", "under $1/z$", z["C1"], (0, 4))
     _pattern(axes["C_2"], "C_2", "under $z^2$, 0 outside", z["C2"], (7, -3))
-    _pattern(axes["C_3"], "C_3", "under $z^2$ around 0: two sheets", z["C3"])
+    _pattern(axes["C_3"], "C_3", "$z^2$ around 0: two sheets", z["C3"])
     sections = {name: (np.pi - t, t0) for name, (t, t0) in angles.items()}  # COD, of Section 4
     nets = {name: (*conformal.quads(z[name]), *sections[name[0]]) for name in z}
     exact = [nets[name] for name in nets if name not in ("A'", "C1")]
