@@ -1,4 +1,4 @@
-"""Writing a figure: SVG, PNG, the data drawn, and its entry in the manifest, if it changed."""
+"""Showing a figure, and writing it: SVG, PNG, the data drawn, its entry in the manifest."""
 
 import hashlib
 import io
@@ -16,6 +16,7 @@ from .drawings import Drawing, deviations, rounded, same
 
 INSIDE = 128  # dots per inch of pictures inside an SVG
 DIGITS = 7  # decimals of the data that are stored
+FOLDER = "INETLIB_FIGURES"  # the variable that says where shown drawings are written, see `asked`
 
 
 def save(drawing: Drawing, folder) -> dict:
@@ -108,8 +109,15 @@ def save_text(text: str, path):
             new.write_text(text, encoding="utf-8", newline="\n")
 
 
-def preview(drawing: Drawing, colours: int = 96):
-    """The drawing as a small PNG (IPython Image), for a notebook; closes the figure."""
+def show(drawing: Drawing, colours: int | None = None):
+    """Show a drawing below the cell of a notebook: as matplotlib does, or as a small PNG.
+
+    colours: of the PNG (IPython Image); the figure is then closed.  Nothing is written, unless
+    somebody says where: see `asked`.  To keep a drawing of your own, `save` it."""
+    if folder := asked():
+        save(drawing, folder)
+    if colours is None:
+        return None
     from IPython.display import Image  # only a notebook needs it
 
     fine, small = io.BytesIO(), io.BytesIO()
@@ -118,6 +126,14 @@ def preview(drawing: Drawing, colours: int = 96):
     picture = PIL.Image.open(fine).convert("RGB")
     picture.quantize(colours, dither=PIL.Image.Dither.NONE).save(small, format="png", optimize=True)
     return Image(data=small.getvalue(), format="png")
+
+
+def asked() -> Path | None:
+    """Where drawings that are shown are written too, or None: the variable INETLIB_FIGURES.
+
+    `make figures` and the tests set it for the notebooks they run, and nobody else."""
+    folder = os.environ.get(FOLDER)
+    return Path(folder) if folder else None
 
 
 def read_manifest(folder) -> dict:

@@ -337,10 +337,45 @@ def test_star_angles_come_with_the_square_of_the_size():
     found = beyond_star.nets(sizes=(8, 16, 32))
     for unit in (False, True):
         rows = beyond_star.table(found, 60 * DEGREE, 45 * DEGREE, unit)
-        for name in ("exp", "inverse", "sphere", "roof"):
+        for name in ("exp", "inverse", "sphere"):
             first, second, third = rows[name][:, 1]
             assert 3.3 < first / second < 4.5 and 3.5 < second / third < 4.2
+        asked = 60 * DEGREE, 45 * DEGREE, unit, 0.9
+        most = [beyond_star.deviation(*net, *asked)[1] for net in found["roof"]]
+        assert 3.3 < most[0] / most[1] < 4.5 and 3.5 < most[1] / most[2] < 4.2
+        assert rows["roof"][1, 1] < 2 * rows["roof"][2, 1]  # the largest does not follow
     assert beyond_star.table(found, 60 * DEGREE, 45 * DEGREE)["z2"].max() < 1e-10
+
+
+def test_the_worst_vertices_of_the_refined_roof_stand_next_to_its_corners():
+    V, Q = beyond_star.nets(sizes=(8, 32))["roof"][1]
+    star = measure.star_angles(V, Q)
+    i, j = np.divmod(star.vertex, 33)
+    off = np.abs(star.theta0 - 45 * DEGREE) / DEGREE
+    corner = (np.minimum(i, 32 - i) < 4) & (np.minimum(j, 32 - j) < 4)
+    assert corner[np.argmax(off)] and off[corner].max() > 2 * off[~corner].max()
+
+
+def test_marching_from_two_sides_is_exact_and_unstable():
+    size, grown = [], []
+    for m in (4, 6, 8):
+        V, Q = surfaces.freeform_patch(m, m)
+        W = freedom.march(V, m, m, 75 * DEGREE, 70 * DEGREE)
+        for angles, asked in zip(measure.angles(W, Q), (75, 70), strict=True):
+            assert np.allclose(angles, asked * DEGREE, atol=1e-12)
+        index = np.arange((m + 1) ** 2).reshape(m + 1, m + 1)
+        assert np.array_equal(W[index[0]], V[index[0]])
+        assert np.array_equal(W[index[:, 0]], V[index[:, 0]])
+        size.append(measure.quality(W, Q).flips / len(Q))
+        exact = conformal.quads(conformal.sheared_grid(75 * DEGREE, 70 * DEGREE, m, m))[0]
+        assert np.allclose(freedom.march(exact, m, m, 75 * DEGREE, 70 * DEGREE), exact, atol=1e-9)
+        shifted = exact + 1e-9 * np.eye(len(V))[:, [1]] * [0, 1, 0]
+        moved = freedom.march(shifted, m, m, 75 * DEGREE, 70 * DEGREE) - exact
+        grown.append(np.linalg.norm(moved, axis=1).max() / 1e-9)
+    assert size[0] < size[1] < size[2] and size[2] > 0.5
+    assert grown[1] > 10 * grown[0] and grown[2] > 10 * grown[1]
+    with pytest.raises(ValueError, match="6 x 3"):
+        freedom.march(V, 2, 1, 1.0, 1.0)
 
 
 @pytest.mark.parametrize("theta, theta0", [(60, 45), (90, 90), (120, 90), (20, 160)])

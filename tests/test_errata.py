@@ -1,14 +1,27 @@
-"""One test an erratum: what is printed is false, what ERRATA.md puts in its place is true.
+"""One test an entry of ERRATA.md: what is printed is false, or false in general, or has two
+readings; what stands in its place is true.
 
 The vectors are made here by hand; only where the statement is about a net does the library
 build one."""
 
+from itertools import pairwise
+
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import sympy as sp
 
-from inetlib import conformal, loxodrome, measure, mesh, parallelogram, surfaces
-from inetlib.drawings import fig09
+from inetlib import (
+    conformal,
+    developable,
+    loxodrome,
+    measure,
+    mesh,
+    moebius,
+    parallelogram,
+    surfaces,
+)
+from inetlib.drawings import abcd, fig03, fig09
 
 DEG = np.pi / 180
 
@@ -91,8 +104,10 @@ def test_e8_barycentre_and_order_of_the_discrete_derivatives():
         assert sp.simplify(series.coeff(h, 1)) == 0
         assert sp.simplify(series.coeff(h, 0) - second) != 0
     middle = (v1 + v2 + v3 + v4) / 4
+    opposite, neighbours = ((v1 + v2) / 2 + (p + q) / 2 for p, q in ((v3, v4), (v2, v3)))
     assert sp.simplify(middle.subs(h, 0) - x) == 0
     assert sp.simplify((v1 + v2 + v3 + v4).subs(h, 0) - x) != 0
+    assert sp.expand(middle - opposite / 2) == 0 != sp.simplify(middle - neighbours / 2)
 
 
 def test_e9_prop_4_needs_the_range_4_not_6():
@@ -106,25 +121,31 @@ def test_e9_prop_4_needs_the_range_4_not_6():
     assert not parallelogram.is_admissible(*(x[0] for x in measure.ratios(line, [[0, 1, 2, 3]])))
 
 
-def test_e10_slope_and_spacing_of_the_sheared_grid():
-    theta, theta0 = 70 * DEG, 50 * DEG
-    slanted = np.diff(conformal.sheared_grid(theta, theta0, 1, 1)[0])[0]
-    assert slanted.imag / slanted.real == pytest.approx(np.tan(theta0))
-    assert abs(slanted.imag / slanted.real - np.tan(theta)) > 0.5  # k as printed
-    lam = np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
-    for h, is_theta_grid in ((np.sin(theta) / lam, True), (lam * np.sin(theta), False)):
-        u, v = np.array([1.0, 0.0]), np.array([h / np.tan(theta), h])
-        d1, d2 = u - v, u + v
-        defect = d2 @ d2 - d1 @ d1 - 2 * d1 @ d2  # Eq. (13)
-        assert (abs(defect) < 1e-12) == is_theta_grid
-    mu = parallelogram.ratios(theta, theta0)[1]
-    assert (abs(slanted), slanted.imag) == pytest.approx((1 / mu, np.sin(theta0) / mu))
+def test_e10_the_slope_is_that_of_theta0_and_the_step_is_right():
+    theta, theta0 = 80 * DEG, 50 * DEG
+    for z in (fig03.cells_abcd(theta, theta0, 1, 1), conformal.sheared_grid(theta, theta0, 1, 1)):
+        slanted = np.diff(z[0])[0]
+        assert slanted.imag / slanted.real == pytest.approx(np.tan(theta0))
+        assert abs(slanted.imag / slanted.real - np.tan(theta)) > 0.5  # k as printed
+    for theta in (30 * DEG, 60 * DEG, 100 * DEG):  # theta = theta0: h = lam sin theta, as printed
+        lam = np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
+        A, B, C = lam * np.exp(1j * theta), 0, 1
+        D = A + C
+        assert np.angle((A - B) / (C - B)) == pytest.approx(theta)  # the interior angle at B
+        assert np.angle((A - C) / (D - B)) == pytest.approx(theta)  # and AOD
+        assert fig03.cells_abcd(theta, theta, 1, 1)[0, 1].imag == pytest.approx(lam * np.sin(theta))
 
 
-def test_e11_the_captions_of_figs_1_and_2():
+def test_e11_the_caption_of_fig_1():
     a, b, p, q = parallelogram.lengths(*parallelogram.ratios(60 * DEG, 60 * DEG))
     assert np.allclose(np.array([a, b, q]) / np.array([p / 2, q / 2, b]), np.sqrt(2))
     assert np.ptp([a, b, q, p / 2, q / 2, b]) > 0.1  # no chain of equal ratios
+    A, B, C, D = abcd.corners(60 * DEG, 60 * DEG)
+    assert abs(A + C - B - D) < 1e-12  # ABCD is a parallelogram, ABDC crosses itself
+    assert abs(A + D - B - C) > 1
+
+
+def test_e33_the_pairs_of_fig_2_and_the_angles_of_the_text():
     theta, theta0 = 70 * DEG, 55 * DEG
     lam, mu = parallelogram.ratios(theta, theta0)
     shown = {"B": (1 / lam, mu), "C": (lam, 1 / mu), "D": (1 / lam, 1 / mu)}
@@ -319,3 +340,221 @@ def test_e12_b_lies_on_the_side_of_growing_alpha():
     assert np.allclose(turned, 2 * np.pi / 24) and np.allclose(ratio(A, B, C, D), lam)
     assert np.allclose(ratio(B, A, D, C), 1 / lam)  # A and B, C and D exchanged
     assert len(net.Q) == 24 * net.rows  # m around the axis, as in Alg. 1
+
+
+def test_e19_blocks_of_cells_are_similar_only_when_they_are_square():
+    z = conformal.sheared_grid(60 * DEG, 60 * DEG, 6, 6)
+    for k in (1, 2, 3, 6):
+        assert np.allclose(measure.angles(*conformal.quads(z[::k, ::k])), 60 * DEG)
+    theta, theta0 = (x[0] / DEG for x in measure.angles(*conformal.quads(z[:, ::2])))
+    assert (theta, theta0) == pytest.approx((103.8505, 60), abs=1e-4)
+
+
+def test_e20_a_constant_theta_leaves_the_ratio_free():
+    i, j = np.meshgrid(np.arange(9), np.arange(9), indexing="ij")
+    uneven = [(lambda k, a=a: k + a * np.sin(1.1 * k)) for a in (0.25, 0.3)]
+    z = uneven[0](i - j) + np.exp(60j * DEG) * uneven[1](i + j)  # diagonals of two directions
+    V, Q = conformal.quads(z)
+    lam, mu = measure.ratios(V, Q)
+    assert np.allclose(measure.angles(V, Q)[0], 60 * DEG)
+    assert np.ptp(lam) > 1 and np.ptp(mu) > 0.1
+
+
+def test_e21_k_turns_a_loxodrome_around_the_axis():
+    t, k, theta0 = np.linspace(-0.8, 0.8, 17), (-0.5, 0.0, 0.7), 90 * DEG
+    w = np.arctanh(np.sin(t))  # int dt / f on the sphere, f = cos
+    printed = [(w - np.arctanh(np.sin(start))) / np.tan(theta0) for start in k]
+    corrected = [start + w / np.tan(theta0) for start in k]
+    assert np.ptp(printed, axis=0).max() < 1e-12  # one meridian for every k
+    assert np.allclose(np.ptp(corrected, axis=0), 1.2)
+    sphere = surfaces.sphere_profile(start=-0.8, stop=0.8)
+    for start in k:  # the library's angle around the axis
+        x, y, _ = loxodrome.loxodrome(sphere, theta0, start).T
+        assert np.allclose(np.arctan2(y, x), start)
+
+
+def test_e22_a_fixed_alpha_is_a_meridian_a_fixed_t_a_parallel():
+    vase, t = surfaces.vase_profile(), np.linspace(0.2, 3, 9)
+    meridian = surfaces.revolve(vase, 0.4, t)  # S(alpha_i, t)
+    parallel = surfaces.revolve(vase, t, 0.4)  # S(alpha, t_i)
+    assert np.ptp(np.arctan2(meridian[:, 1], meridian[:, 0])) < 1e-12 < np.ptp(meridian[:, 2])
+    assert np.ptp(parallel[:, 2]) == 0 and np.ptp(np.hypot(*parallel[:, :2].T)) < 1e-12
+
+
+def test_e23_the_checkerboard_is_y_at_half_the_parameters():
+    def X(u, v):
+        return np.array(surfaces.SPHERE.point(u, v))
+
+    def Y(u, v):
+        return X(u + v, v - u)
+
+    off = []
+    for h in (0.1, 0.05):
+        midpoint = (X(h, h) + X(2 * h, h)) / 2  # of an edge, a vertex of the checkerboard
+        off.append(np.linalg.norm(Y(h / 2 / 2, 5 * h / 2 / 2) - midpoint))
+        assert np.linalg.norm(Y(h / 2, 5 * h / 2) / 2 - midpoint) > 0.4  # not on this sphere
+    assert off[1] < 1e-3 and off[0] / off[1] == pytest.approx(4, abs=0.1)
+
+
+def test_e24_isothermal_parameters_do_not_make_an_isothermic_net():
+    u, v = sp.symbols("u v", real=True)
+    turned = surfaces.Surface(
+        "", sp.Lambda((u, v), tuple(surfaces.HELICOID.coordinates(u + v, v - u)))
+    )
+    for surface, principal in ((surfaces.HELICOID, False), (turned, True)):
+        E, F, G = surfaces.first_form(surface, u, v)
+        assert sp.simplify(E - G) == sp.simplify(F) == 0  # both are isothermal
+        M = sp.simplify(surfaces.second_form(surface, u, v)[1])
+        assert (M == 0) == principal  # isothermic nets are principal nets, too
+
+
+def test_e25_prop_6_needs_diagonals_that_are_not_parallel():
+    d1 = np.array([1.0, 0, 0])
+    for factor, angle in ((1 + np.sqrt(2), 0), (1 - np.sqrt(2), np.pi)):
+        d2 = factor * d1
+        assert d2 @ d2 - d1 @ d1 == pytest.approx(2 * d1 @ d2)  # Eq. (13)
+        sides = np.arctan2(np.linalg.norm(np.cross(d1, d2)), d1 @ d2)
+        p, q = d1 + d2, d2 - d1
+        lines = np.arctan2(np.linalg.norm(np.cross(p, q)), p @ q)
+        assert (sides, lines) == pytest.approx((angle, angle))  # outside the open (0, pi)
+        lam, mu = (np.linalg.norm(a) / np.linalg.norm(b) for a, b in ((d2, d1), (p, q)))
+        assert lam == pytest.approx(mu)
+        assert not np.sqrt(2) - 1 + 1e-12 < lam < np.sqrt(2) + 1 - 1e-12  # the ends of Eq. (9)
+
+
+def test_e26_bending_keeps_the_parallelograms_on_the_surface_not_the_straight_ones():
+    spread = []
+    for n in (8, 16, 32):
+        z = conformal.sheared_grid(60 * DEG, 60 * DEG, n, n, 0.5, 4 / n)
+        V = developable.cone(z, 30 * DEG).reshape(-1, 3)  # vertex angle 60 degrees
+        theta, theta0 = (x / DEG for x in measure.angles(V, mesh.grid_quads(n, n)))
+        spread.append(max(np.ptp(theta), np.ptp(theta0)))
+        rolled = developable.roll(z, 1.0).reshape(-1, 3)
+        one = measure.angles(rolled, mesh.grid_quads(n, n))
+        assert np.ptp(one, axis=1).max() < 1e-12  # on a cylinder congruent, but of other angles
+        assert np.abs(one[0][0] / DEG - 60) > 0.01
+    assert (
+        spread[0] > 0.7 and spread[0] / spread[1] > 2.5 and spread[1] / spread[2] > 3
+    )  # congruent in the limit only
+
+
+def test_e27_stereographic_projection_keeps_straight_quads_to_second_order_only():
+    asked, off = (np.arccos(1 / np.sqrt(5)), 45 * DEG), []
+    for k in (1, 2, 4):
+        z = conformal.sheared_grid(*asked, 13 * k, 30 * k, 0, 0.25 / k, 1 - 1j, -1)
+        V, Q = conformal.quads(np.exp(-1j * z))
+        assert np.abs(np.subtract(measure.angles(V, Q), np.reshape(asked, (2, 1)))).max() < 1e-12
+        sphere = moebius.sphere_points(V[:, 0] + 1j * V[:, 1])
+        angles = measure.angles(sphere, Q)
+        off.append(np.abs(np.subtract(angles, np.reshape(asked, (2, 1)))).max() / DEG)
+    assert off[0] == pytest.approx(0.446, abs=1e-3)
+    assert 3.5 < off[0] / off[1] < 4.5 and 3.5 < off[1] / off[2] < 4.5
+
+
+def test_e28_z2_is_no_immersion_at_0():
+    z = fig03.cells_abcd(60 * DEG, 60 * DEG, 4, 4)
+    z = z - z[2, 2]
+    corners = [z[3, 2], z[2, 3], z[1, 2]]  # neighbours of 0, in turn
+    for before, after in pairwise(corners):
+        image = np.angle(after**2 / before**2) % (2 * np.pi)
+        assert image == pytest.approx(2 * np.angle(after / before))
+    assert len(measure.nonconvex(*conformal.quads(z**2))) == 2
+    assert len(measure.nonconvex(*conformal.quads((z + 8 + 8j) ** 2))) == 0
+    fresh = parallelogram.angles(*measure.ratios(*conformal.quads(z**2)))
+    assert np.allclose(fresh, [[120 * DEG], [60 * DEG]])  # the ratios do not notice
+
+
+def test_e29_eq_15_at_the_ends_is_a_point_and_has_the_parallel_as_its_limit():
+    def angle(s, theta0, factor):
+        """alpha(s) from the parallel at latitude 0.3 of the sphere, by the integral of 1 / f."""
+        w = np.arctanh(np.sin(0.3 + s * np.sin(theta0))) - np.arctanh(np.sin(0.3))
+        return factor(theta0) * w
+
+    s = np.linspace(0, 2, 9)
+    assert np.ptp(angle(s, 0.0, np.cos)) == 0  # t(s) = c: the curve stands still
+    limit = angle(s, 1e-6, lambda x: 1 / np.tan(x))
+    assert np.allclose(limit, s / np.cos(0.3), atol=1e-5)  # the parallel, by arc length
+
+
+def test_e30_the_equations_for_angles_need_positive_ratios():
+    V, Q = conformal.quads(conformal.sheared_grid(120 * DEG, 45 * DEG, 1, 1))
+    assert measure.angles(V, Q)[0][0] == pytest.approx(120 * DEG)
+    (lam,), (mu,) = measure.ratios(V, Q)
+    c1, c2, cosine = lam**2, mu**2, np.cos(60 * DEG)
+    for root, solves in ((lam, False), (-lam, True)):
+        assert root**2 == pytest.approx(c1)  # Eq. (17) does not tell the roots apart
+        defect = (1 + c1) * (c2 - 1) - 2 * cosine * root * (1 + c2)  # Eq. (20) for 60 degrees
+        assert (abs(defect) < 1e-12) == solves
+
+
+def test_e31_an_isogonal_net_need_not_have_similar_parallelograms():
+    u, v = np.meshgrid(np.linspace(0, 6, 25), np.linspace(0, 1.5, 6))
+    speed = np.hypot(2 * np.sin(u), np.cos(u))  # of the ellipse (2 cos u, sin u)
+    normal = (np.cos(u) + 2j * np.sin(u)) / speed
+    x_u, x_v = (speed + 2 * v / speed**2) * 1j * normal, normal  # X = c(u) + v n(u)
+    h = 1e-5
+
+    def X(u):
+        return (
+            2 * np.cos(u)
+            + 1j * np.sin(u)
+            + v * (np.cos(u) + 2j * np.sin(u)) / np.hypot(2 * np.sin(u), np.cos(u))
+        )
+
+    assert np.allclose((X(u + h) - X(u - h)) / (2 * h), x_u, atol=1e-8)
+    assert np.allclose(np.angle(x_u / x_v), np.pi / 2)  # isogonal, and yet
+    theta = np.abs(np.angle((x_u + x_v) / (x_u - x_v))) / DEG
+    assert np.ptp(theta) > 40
+    assert np.ptp(np.abs(x_u / x_v)) > 1
+
+
+def test_e32_the_plane_has_no_conformal_map_onto_a_disk():
+    rng = np.random.default_rng(32)
+    circle = np.exp(2j * np.pi * np.arange(4096) / 4096)
+    for _ in range(50):
+        R = rng.uniform(1, 100)
+        polynomial = np.polynomial.Polynomial(rng.normal(size=9) + 1j * rng.normal(size=9))
+        largest = np.abs(polynomial(R * circle)).max()  # to reach the unit disk, divide by it
+        assert abs(polynomial.deriv()(0)) * R <= largest  # f'(0) <= 1 / R: 0 on the whole plane
+
+
+def test_e34_one_cell_has_aod_and_cod():
+    for theta, theta0 in ((60, 60), (45, 45), (80, 50)):
+        _, mu = parallelogram.ratios(theta * DEG, theta0 * DEG)
+        (B, A), (C, D) = fig03.cells_abcd(theta * DEG, theta0 * DEG, 1, 1)
+        middle = (A + C) / 2
+        assert abs(A - B) == pytest.approx(mu) and abs(C - B) == pytest.approx(1)
+        assert np.angle((A - middle) / (D - middle)) == pytest.approx(theta * DEG)  # AOD
+        assert np.angle((D - middle) / (C - middle)) == pytest.approx((180 - theta) * DEG)
+        V = np.array([[z.real, z.imag, 0] for z in (A, B, C, D)])
+        found = [x[0] / DEG for x in measure.angles(V, [[0, 1, 2, 3]])]  # v1 ... v4
+        assert found == pytest.approx([180 - theta, theta0])
+        d1, d2 = V[2] - V[0], V[3] - V[1]
+        assert theta != theta0 or abs(d2 @ d2 - d1 @ d1 - 2 * d1 @ d2) > 0.1  # Eq. (13) fails
+        slanted = np.diff(conformal.sheared_grid(theta * DEG, theta0 * DEG, 1, 1)[0])[0]
+        assert abs(slanted) == pytest.approx(1 / mu)
+    drawing = fig03.draw()
+    plt.close(drawing.figure)
+    edges = [abs(np.diff(drawing.data[name][0])[0]) for name in "BC"]
+    assert edges == pytest.approx([1.931852, 1.618034], abs=1e-6)
+
+
+def test_e35_the_two_constant_angles_are_equal_for_equal_ratios_only():
+    z = conformal.sheared_grid(70 * DEG, 50 * DEG, 8, 8, 1 + 0.5j, 0.1)
+    theta, theta0 = measure.angles(*conformal.quads(z**2))
+    assert max(np.ptp(theta), np.ptp(theta0)) < 1e-12  # each from face to face
+    assert theta[0] - theta0[0] == pytest.approx(20 * DEG)  # but not to one another
+
+
+def test_e36_rows_are_spaced_by_the_radius_whatever_the_angles():
+    delta = 2 * np.pi / 96
+    profiles = [surfaces.cone_profile(30 * DEG), surfaces.sphere_profile()]
+    for profile in (*profiles, surfaces.catenoid_profile()):
+        for angles in ((60 * DEG, 60 * DEG), (75 * DEG, 50 * DEG)):
+            net = loxodrome.web(profile, *angles, 96)
+            r, z = np.hypot(net.V[:, 0], net.V[:, 1]), net.V[:, 2]
+            order = np.unique(np.round(z, 9), return_index=True)[1]
+            r, z = r[order], z[order]
+            steps = np.hypot(np.diff(r), np.diff(z)) / ((r[1:] + r[:-1]) / 2)
+            _, mu = parallelogram.ratios(*angles)
+            assert np.allclose(steps, delta * np.sin(angles[1]) / mu, rtol=0.01)

@@ -115,7 +115,7 @@ def test_distances_are_fractions_in_both_directions():
 def test_a_preview_is_a_small_picture_and_closes_the_figure():
     figure, _ = plot.canvas([["one"]], 3, 2)
     drawing = publish.Drawing("fig00", figure, "none", {}, {}, [], {})
-    image = publish.preview(drawing, colours=8)
+    image = publish.show(drawing, colours=8)
     assert not plt.fignum_exists(figure.number)
     picture = PIL.Image.open(io.BytesIO(image.data))
     assert picture.size == (330, 220) and picture.mode == "P"

@@ -1,8 +1,9 @@
 """Every notebook is run from its first cell to its last by nbmake, on a copy, and compared.
 
-The copy writes its figures beside itself.  Stored text, pictures and figures must be what the rerun
-shows, within the tolerances of `inetlib.drawings.same`; what may differ more says so by a tag (see
-tools/outputs.py).  Pictures of another matplotlib than the pinned one need only look alike."""
+The copy writes its figures beside itself, as INETLIB_FIGURES says.  Stored text, pictures and
+figures must be what the rerun shows, within the tolerances of `inetlib.drawings.same`; what may
+differ more says so by a tag (see tools/outputs.py).  Pictures of another matplotlib than the
+pinned one need only look alike."""
 
 import base64
 import io
@@ -39,6 +40,7 @@ def rerun(request, tmp_path_factory):
     command += ["-q", "-p", "no:cacheprovider", "--rootdir", str(folder), str(copy)]
     environment = outputs.environment(tmp_path_factory.mktemp("settings"))
     environment |= {"PYTEST_ADDOPTS": "", "PYDEVD_DISABLE_FILE_VALIDATION": "1"}
+    environment |= {publish.FOLDER: str(folder / "figures")}
     text = {"capture_output": True, "text": True, "errors": "replace"}
     done = subprocess.run(command, cwd=folder, env=environment, **text)
     assert done.returncode == 0, done.stdout[-6000:] + done.stderr[-2000:]
@@ -68,6 +70,15 @@ def test_a_rerun_draws_the_stored_figures(rerun):
     for table in figures.glob("table*"):
         both = (folder.read_text() for folder in (table, ROOT / "figures" / table.name))
         assert same.text(*both)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_no_notebook_writes_into_the_folder_of_figures(path):
+    source = "\n".join(cell.source for cell in cells_of(path))
+    assert "figures/" not in source and '"../figures' not in source
+    assert "publish.save" not in source and "table1.save" not in source
+    figures = [c for c in cells_of(path) if any(t in MANIFEST for t in outputs.tags(c))]
+    assert all("publish.show(" in cell.source for cell in figures)
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -94,13 +94,17 @@ def test_every_docstring_that_cites_an_item_stands_in_its_row():
 
 def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
     text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
-    done = re.findall(r"^## E(\d+) ", text, re.MULTILINE)
-    found = names_in("tests/test_errata.py")
-    parts = re.split(r"^## ", text, flags=re.MULTILINE)[1:]
-    for part in parts:
-        if part.startswith("E"):
-            number = re.match(r"E(\d+)", part)[1]
-            assert all(f"- {w}:" in part for w in ("Printed", "Must be", "Why", "Test")), part
+    found, done = names_in("tests/test_errata.py"), []
+    kinds = re.split(r"^# ", text, flags=re.MULTILINE)[2:]
+    heads = {"Misprints": "Must be", "Conditions that are missing": "Must be"}
+    heads |= {"Readings": "Read as", "Words": None}
+    assert [kind.partition("\n")[0] for kind in kinds] == list(heads)
+    for kind, word in zip(kinds, heads.values(), strict=True):
+        for part in re.split(r"^## ", kind, flags=re.MULTILINE)[1:]:
+            number = re.match(r"E(\d+) ", part)[1]
+            assert all(f"- {w}:" in part for w in ("Printed", word, "Why", "Test")), part
             assert (test := re.search(r"- Test: `(\w+)`", part)[1]) in found
             assert test.startswith(f"test_e{number}_")
-    assert sorted(map(int, done)) == list(range(1, 19))
+            done.append(int(number))
+    tests = {int(re.match(r"test_e(\d+)_", n)[1]) for n in found if n.startswith("test_e")}
+    assert sorted(done) == sorted(tests) == list(range(1, len(done) + 1))

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import outputs  # tools/outputs.py
 import pytest
+import redraw  # tools/redraw.py
 
 from inetlib import conformal, drawings, mesh, plot, publish, surfaces
+from inetlib.drawings import table1
 
 FIGURES = Path(__file__).resolve().parent.parent / "figures"
 T, T0 = np.radians(60), np.radians(45)
@@ -98,7 +101,7 @@ def test_every_figure_with_nets_says_that_none_has_darts_or_which():
         assert len(said) > panels
     with open(FIGURES / "table1.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == 7 * 4  # runs of the paper's formulation that end off their angles, too
+    assert len(rows) == 7 * 5  # runs of the paper's formulation that end off their angles, too
     assert {row["flips, darts"] for row in rows} == {"-", "0, 0"}
 
 
@@ -233,6 +236,36 @@ def test_a_text_is_kept_unless_it_says_something_else(tmp_path):
         publish.save_text(f"{text}\n", path)
         assert path.read_bytes() == f"{kept}\n".encode()
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_showing_writes_nothing_unless_somebody_says_where(draw, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(publish.FOLDER, raising=False)
+    lines = [["12A", *12 * ["-"]]]
+    for colours in (None, 96):
+        picture = publish.show(draw(), colours)
+        assert (picture is None) == (colours is None)
+        table1.show(lines)
+    assert publish.asked() is None and contents(tmp_path) == {}
+    monkeypatch.setenv(publish.FOLDER, str(tmp_path / "figures"))
+    publish.show(draw())
+    assert table1.show(lines).data.count("\n") == 3
+    assert set(contents(tmp_path / "figures")) == FILES | {"table1.md", "table1.csv"}
+
+
+def test_the_kernels_of_redraw_write_into_figures_and_others_nowhere(monkeypatch):
+    monkeypatch.setenv(publish.FOLDER, "somewhere")
+    assert publish.FOLDER not in outputs.environment("own")
+    assert redraw.environment("own")[publish.FOLDER] == str(FIGURES)
+
+
+def test_the_table_of_redraw_tells_exact_nets_from_drawn_ones():
+    claims = {"net_max_deviation_deg": 0.25, "other_max_deviation_deg": 0.5, "start_theta_deg": 9}
+    exact = {"max_deviation_theta_deg": 0.0, "max_deviation_theta0_deg": 1e-9}
+    entry = exact | {"claims": claims | {"start_max_deviation_deg": 33.0}}
+    assert redraw.deviations(entry) == (1e-9, 0.5)
+    assert redraw.deviations(exact | {"claims": {}}) == (1e-9, 1e-9)
+    assert redraw.deviations(dict.fromkeys(exact) | {"claims": {}}) == (None, None)
 
 
 def test_the_users_settings_change_no_byte(draw, tmp_path):

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 
-from inetlib import view
+from inetlib import publish, view
 from inetlib.drawings import same
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -29,7 +29,8 @@ def environment(folder):
         "MATPLOTLIBRC": matplotlib.get_data_path(),
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
     }
-    for name in ("PYTHONSTARTUP", "JPY_SESSION_NAME"):  # the latter says that a person looks on
+    # JPY_SESSION_NAME says that a person looks on; where figures go is for the caller to say.
+    for name in ("PYTHONSTARTUP", "JPY_SESSION_NAME", publish.FOLDER):
         own.pop(name, None)
     return own
 

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from .. import mesh
+from ..parallelogram import check_whole, ratios
 from . import residuals, sparse
 
 LARGEST = 1200  # faces, of a dense singular value decomposition
@@ -54,3 +55,27 @@ def count(
     rank = int(np.sum(values > tolerance * values[0]))
     gap = float(values[rank - 1] / values[0])
     return Freedom(J.shape[1], J.shape[0], rank, J.shape[1] - rank, gap)
+
+
+def march(V: np.ndarray, m: int, n: int, theta: float, theta0: float) -> np.ndarray:
+    """A net of m x n quads with exact angles, built face by face from two of its sides.
+
+    V: ((m+1)(n+1), 3), numbered as by `mesh.grid_quads`.  Its sides i = 0 and j = 0 stay.  Three
+    corners of a face leave a circle to the fourth: v2 + d2, where d2 has the length lam |d1| and
+    the angle theta with d1; taken is its point nearest to V.  Angles are radians.  Returns the
+    vertices ((m+1)(n+1), 3)."""
+    m, n = check_whole("m", m), check_whole("n", n)
+    lam, _ = ratios(theta, theta0)
+    V = np.array(V, dtype=float)
+    if V.shape != ((m + 1) * (n + 1), 3):
+        raise ValueError(f"V has the shape {V.shape}: {m} x {n} quads have {(m + 1) * (n + 1)} x 3")
+    grid = V.reshape(m + 1, n + 1, 3)
+    for i, j in np.ndindex(m, n):
+        v1, v2, v3, near = grid[i, j + 1], grid[i, j], grid[i + 1, j], grid[i + 1, j + 1]
+        length = np.linalg.norm(v3 - v1)
+        along = (v3 - v1) / length
+        across = (near - v2) - ((near - v2) @ along) * along
+        across /= np.linalg.norm(across)
+        d2 = lam * length * (np.cos(theta) * along + np.sin(theta) * across)
+        grid[i + 1, j + 1] = v2 + d2
+    return V
