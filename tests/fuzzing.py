@@ -35,7 +35,7 @@ def outcome(path):
 
 
 def late(number, frame):
-    raise TimeoutError(f"too long")
+    raise TimeoutError("too long")
 
 
 if __name__ == "__main__":
