@@ -119,27 +119,27 @@ def test_app_a4_every_number_of_a_row_is_that_of_its_net():
     V = np.stack([u * (1 + 0.1 * v), v, 0.3 * np.cos(1.3 * u) + 0.2 * u * v], axis=-1)
     V, Q = V.reshape(-1, 3), mesh.grid_quads(5, 5)
     names = dict(zip(table1.PRINTED, [{}, *GOALS[1:4], *GOALS[-2:], {"lam": 1.3}], strict=True))
+    noise = 0.04 * np.random.default_rng(4).normal(size=V.shape)  # angles that are off, and darts
+    noise += np.outer(np.indices((6, 6)).sum(axis=0).ravel() % 2, [0.3, 0.3, 0])
     for formulation in ("paper, splu", "ratio"):
-        nets = {
-            k: (Q, solver.optimize(V, Q, **w, formulation=formulation)) for k, w in names.items()
-        }
-        rows = table1.rows({"small": nets})
-        assert [row[:2] for row in rows[1::2]] == [[name, "small"] for name in names]
+        nets = {}
+        for name, wanted in names.items():
+            found = solver.optimize(V, Q, **wanted, formulation=formulation)
+            nets[name] = Q, found._replace(V=found.V + noise)
+        rows = table1.rows({"noisy": nets})
+        assert [row[:2] for row in rows[1::2]] == [[name, "noisy"] for name in names]
         for row, (_, found) in zip(rows[1::2], nets.values(), strict=True):
             cells = dict(zip(table1.HEADER, row, strict=True))
             off, darts, ratio = judged(found.V, Q, *np.degrees([found.theta, found.theta0]))
-            for cell, value in zip(row[7:11], off, strict=True):
-                assert (
-                    value < 1e-5 if cell == "< 1e-9" else float(cell) == pytest.approx(value, 0.06)
-                )
-            assert cells["flips, darts"] == f"0, {darts}"
+            assert off[0] > 2 * off[2] > 2 and darts > 0
+            assert list(map(float, row[7:11])) == pytest.approx(off, rel=0.06)
+            assert cells["flips, darts"].endswith(f", {darts}")
             assert float(cells["area ratio"]) == pytest.approx(ratio, abs=6e-4)
             assert int(cells["F"]) == 25 and int(cells["#iter"]) == len(found.history) - 1
-            sizes = guided.size(Q, 36, aim(**names[cells["Fig."]]))
+            wanted = names[cells["Fig."]]
+            sizes = guided.size(Q, 36, aim(**wanted))
             if formulation == "ratio":  # vertices and what is left free; two equations a face
-                sizes = 108 + 2 - len(names[cells["Fig."]]), 50
-                if "equal" in names[cells["Fig."]]:
-                    sizes = 109, 50
+                sizes = 108 + (1 if "equal" in wanted else 2 - len(wanted)), 50
             assert (int(cells["#var"]), int(cells["#cons"])) == sizes
 
 
