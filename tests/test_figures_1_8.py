@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
+from matplotlib.text import Annotation
 
 from inetlib import parallelogram
 from inetlib.drawings import fig01, fig02, fig03, fig04, fig05, fig06, fig08
@@ -229,6 +230,9 @@ def test_fig_5_shows_four_families_a_catenoid_and_discrete_derivatives():
     square = [x for x in lines if len(x) == 2 and np.abs([x.real, x.imag]).max() <= 0.5 + 1e-9]
     slopes = [round(turn(1, x[1] - x[0])) % 180 for x in square]  # lines of the parameter square
     assert all(slopes.count(k) >= 5 for k in (0, 45, 90, 135))
+    arrows = [[a for a in ax.texts if isinstance(a, Annotation)] for ax in axes]
+    ways = [{round(turn(1, plane(a.xy) - plane(a.xyann))) for a in some} for some in arrows]
+    assert {0, 90, -45, 45} in ways  # X_u, X_v, Y_u, Y_v in the square
     rho = np.exp(65j * DEG) / parallelogram.ratios(75 * DEG, 65 * DEG)[1]  # X_v / X_u
 
     def points(n):

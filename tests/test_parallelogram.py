@@ -90,6 +90,15 @@ def test_100000_random_angles_survive_the_way_to_ratios_and_back():
     np.testing.assert_allclose(back, (theta, theta0), rtol=0, atol=1e-12)
 
 
+def test_b1_the_ratios_of_two_angles_have_these_angles_by_symbols():
+    angles = sympy.symbols("theta theta0", positive=True)
+    lam, mu = (ratio.rewrite(sympy.log) for ratio in parallelogram.ratios(*angles))
+    for cosine, one in zip(parallelogram.cosines(lam, mu), angles, strict=True):
+        assert sympy.simplify(cosine**2 - sympy.cos(one) ** 2) == 0
+    larger = np.array(parallelogram.ratios(THETA, THETA0)[::-1]) > 1  # mu > 1: theta < 90 degrees
+    np.testing.assert_array_equal(larger, np.cos([THETA, THETA0]) > 0)
+
+
 @pytest.mark.parametrize(
     ("theta", "theta0", "lam", "mu"),
     [
