@@ -307,7 +307,7 @@ class Families(NamedTuple):
 def polylines(Q: ArrayLike) -> Families:
     """The mesh curves along u-edges, v-edges, diagonals v1 v3 (Y_u) and diagonals v2 v4 (Y_v).
 
-    Q labelled, else ValueError.  They end at boundary and singular vertices.  Paper: Thm 8."""
+    Q labelled, else ValueError.  They end at boundary and singular vertices."""
     require_labels(Q)
     Q = check_quads(Q)
     return Families(*(chains(edges) for edges in (*_edges(Q), Q[:, ::2], Q[:, 1::2])))

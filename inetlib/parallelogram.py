@@ -129,7 +129,7 @@ def cosines(lam: Number, mu: Number) -> tuple[Number, Number]:
     """(cos theta, cos theta0), rational in the ratios.
 
     An arccos of these loses half the digits near 0 and pi: see `angles`.
-    Paper: Eq. (3), Eq. (8), Lemma 1, Def. 10."""
+    Paper: Eq. (3), Eq. (8), Lemma 1, Thm 7, Def. 10."""
     lam, mu = _require_admissible(lam, mu)
     cos_theta = (1 + lam**2) * (mu**2 - 1) / (2 * lam * (1 + mu**2))
     cos_theta0 = (1 + mu**2) * (lam**2 - 1) / (2 * mu * (1 + lam**2))
@@ -146,7 +146,7 @@ def angles(lam: Number, mu: Number) -> tuple[Number, Number]:
 
 
 def half_cosines(lam: Number, mu: Number) -> tuple[Number, Number]:
-    """(cos alpha, cos beta) of the `half_angles`.  Paper: Eq. (5), Eq. (10), Lemma 1."""
+    """(cos alpha, cos beta) of the `half_angles`.  Paper: Eq. (5), Eq. (10), Lemma 1, Thm 7."""
     lam, mu = _require_admissible(lam, mu)
     root = 2 * mu * library(lam, mu).sqrt(2 * (1 + lam**2) * (1 + mu**2))
     cos_alpha = (3 * lam**2 * mu**2 + lam**2 + mu**2 - 1) / (lam * root)
@@ -209,7 +209,7 @@ def diagonal_ratio(rho: Number) -> Number:
     """Y_v / Y_u = (1 + rho) / (1 - rho) = lam exp(i theta); ValueError for rho = 1.
 
     An involution between s = Y_v / Y_u and r = 1 / rho: s = (r + 1) / (r - 1).
-    Paper: Thm 7 in complex form, B2."""
+    Paper: B2."""
     if library(rho) is np:
         rho = np.asarray(rho, dtype=complex)[()]
         if np.any(rho == 1):
@@ -232,7 +232,7 @@ def directions(rho: Number) -> tuple[Number, Number, Number, Number]:
 
 
 def gaps(lam: Number, mu: Number) -> tuple[Number, Number, Number, Number]:
-    """The angles between neighbours of the `directions`; their sum is pi.  Paper: B10."""
+    """The angles between neighbours of the `directions`; their sum is pi.  Paper: Thm 8, B10."""
     alpha, beta = half_angles(lam, mu)
     _, theta0 = angles(lam, mu)
     return alpha, theta0 - alpha, library(lam, mu).pi - theta0 - beta, beta

@@ -87,7 +87,8 @@ def differences(name: str, one, two) -> list:
         found = [] if good else ["manifest"]
         found += [f"data {array}" for array in same.data(*map(read_data, data))]
         found += ["svg"] * (not same.svg(*(path.read_text(encoding="utf-8") for path in svg)))
-        found += ["png"] * (not same.picture(*(path.read_bytes() for path in png)))
+        old, new = (path.read_bytes() for path in png)
+        found += ["png"] * (not same.picture(old, new, *same.FEW))
     except (OSError, EOFError, ValueError, zipfile.BadZipFile):  # a broken file, half a merge
         return ["unreadable"]
     return found

@@ -88,6 +88,17 @@ def first_form(surface: Surface, u: ArrayLike, v: ArrayLike, step: float = 0.01)
     return tuple(np.sum(x * y, axis=0) for x, y in ((a, a), (a, b), (b, b)))
 
 
+def ratios(surface: Surface, u: ArrayLike, v: ArrayLike, step: float = 0.01) -> tuple:
+    """(lam, mu) = (|Y_v| / |Y_u|, |X_u| / |X_v|) with Y_u = X_u - X_v and Y_v = X_u + X_v.
+
+    Arguments as for `tangents`.  Where both are constant, so are all angles of the four families
+    of curves: an I-web, and its parameters are linear in isothermal ones.
+    Paper: Thm 7, Thm 8, B3."""
+    E, F, G = first_form(surface, u, v, step)
+    xp = library(u, v)
+    return xp.sqrt((E + 2 * F + G) / (E - 2 * F + G)), xp.sqrt(E / G)
+
+
 def second_form(surface: Surface, u: ArrayLike, v: ArrayLike, step: float = 0.01) -> tuple:
     """(L, M, N): X_uu, X_uv and X_vv times the unit normal; arguments as for `tangents`."""
     along = (Surface("", lambda u, v, k=k: tangents(surface, u, v, step)[k]) for k in (0, 1))

@@ -178,34 +178,63 @@ def test_the_jacobian_is_the_derivative():
     assert np.allclose(freedom.jacobian(V, Q) @ move.ravel(), (ahead - back) / 2e-6, atol=1e-7)
 
 
-@pytest.mark.parametrize("m, n", [(1, 1), (4, 4), (3, 7)])
-def test_grids_have_full_rank_flat_or_not(m, n):
-    V, Q = conformal.quads(conformal.sheared_grid(np.pi / 2, np.pi / 2, m, n))
-    bent = V + 0.1 * np.random.default_rng(1).normal(size=V.shape)
-    for W in (V, bent):
-        found = freedom.count(W, Q)
-        assert found.rank == found.equations == 2 * m * n and found.gap > 1e-3
-        assert found.free == 3 * (m + 1) * (n + 1) - 2 * m * n
+def own_rank(V, Q, moving):
+    """The rank of the derivative of all log ratios by the coordinates that move: differences."""
+
+    def logs(x):
+        W = V.copy()
+        W[moving] = x.reshape(-1, 3)
+        v1, v2, v3, v4 = W[Q].transpose(1, 0, 2)
+        d1, d2 = v3 - v1, v4 - v2
+        squares = [np.sum(d * d, axis=1) for d in (d1, d2, d1 + d2, d2 - d1)]
+        return np.log(np.concatenate([squares[1] / squares[0], squares[2] / squares[3]]))
+
+    x, size = V[moving].ravel(), np.ptp(V, axis=0).max()
+    steps = 1e-4 * size * np.eye(x.size)
+    J = [8 * (logs(x + h) - logs(x - h)) - logs(x + 2 * h) + logs(x - 2 * h) for h in steps]
+    return np.linalg.matrix_rank(np.array(J), rtol=1e-9)
 
 
-def test_ring_meshes_webs_and_tori_have_full_rank():
-    nets = [mesh.polygon_rings(6, 3)[:2], examples.polar_cap(7, 3)[:2]]
-    nets.append(loxodrome.web(surfaces.sphere_profile(), 1.2, 1.0, 10, 6)[:2])
-    V, Q = loxodrome.torus_web(2, 0.8, 8, 6, 1)[:2]
-    nets.append((V + 0.05 * np.random.default_rng(1).normal(size=V.shape), Q))
-    for V, Q in nets:
-        assert freedom.count(V, Q).rank == 2 * len(Q)
-    assert freedom.count(V, Q).free == len(V)  # closed: as many vertices as faces
+def nets_of_all_kinds():
+    """{name: (V, Q)}: exact and bent, planar and in space, with boundary, singular, closed."""
+    rng = np.random.default_rng(8)
+    for k in range(12):
+        angles, (m, n) = rng.uniform(0.6, 2.5, 2), rng.integers(1, 6, 2)
+        V, Q = conformal.quads(conformal.sheared_grid(*angles, m, n))
+        yield f"grid {k}", V, Q
+        yield f"bent grid {k}", V + 0.1 * rng.normal(size=V.shape), Q
+    yield "hexagon", *mesh.polygon_rings(6, 2)[:2]
+    yield "polar cap", *examples.polar_cap(7, 2)[:2]
+    yield "web", *loxodrome.web(surfaces.sphere_profile(), 1.2, 1.0, 9, 4)[:2]
+    yield "torus", *loxodrome.torus_web(2, 0.8, 8, 6, 1)[:2]
+    yield "roof", *surfaces.freeform_patch(5, 5)
 
 
-def test_a_fixed_boundary_costs_rank_where_the_net_is_flat():
+def test_b8_all_equations_are_independent_by_two_ranks():
+    for name, V, Q in nets_of_all_kinds():
+        rank, found = own_rank(V, Q, np.arange(len(V))), freedom.count(V, Q)
+        assert rank == found.rank == found.equations == 2 * len(Q), name
+        assert found.free == 3 * len(V) - 2 * len(Q), name
+    V, Q = loxodrome.torus_web(2, 0.8, 9, 5, 0)[:2]  # an exception: one of them follows
+    assert own_rank(V, Q, np.arange(len(V))) == freedom.count(V, Q).rank == 2 * len(Q) - 1
+
+
+def test_b8_what_may_stay_by_two_ranks():
+    """One curve leaves all equations independent; of a flat net its whole boundary does not."""
+    index = np.arange(49).reshape(7, 7)
     rim = mesh.boundary_loops(mesh.grid_quads(6, 6))[0]
-    V, Q = conformal.quads(conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, 6, 6))
-    flat = freedom.count(V, Q, rim)
-    assert (flat.unknowns, flat.rank, flat.free) == (3 * 25, 2 * 25, 25)
-    assert freedom.count(V, Q, np.isin(np.arange(len(V)), rim)) == flat
-    roof = freedom.count(*surfaces.freeform_patch(6, 6), rim)
-    assert (roof.rank, roof.free) == (72, 3)
+    flat = conformal.quads(conformal.sheared_grid(60 * DEGREE, 45 * DEGREE, 6, 6))
+    roof = surfaces.freeform_patch(6, 6)
+    curve, both = index[3], index[[0, -1]].ravel()
+    assert list(map(len, beyond_freedom.curves(6).values())) == [7, 7, 14, 0, 0, 24]
+    wanted = [(flat, curve, 72), (flat, rim, 50), (roof, curve, 72), (roof, both, 72)]
+    for (V, Q), stay, rank in [*wanted, (roof, rim, 72)]:
+        found = freedom.count(V, Q, stay)
+        moving = np.setdiff1d(np.arange(len(V)), stay)
+        assert own_rank(V, Q, moving) == found.rank == rank
+        assert (found.unknowns, found.free) == (3 * len(moving), 3 * len(moving) - rank)
+        assert freedom.count(V, Q, np.isin(np.arange(len(V)), stay)) == found
+    assert found.free == 3  # of 75 coordinates: too few to reach angles far away
     with pytest.raises(ValueError, match="1225 faces: at most 1200"):
         freedom.count(*surfaces.freeform_patch(35, 35))
 

@@ -6,7 +6,7 @@ import sympy
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from inetlib import conformal, measure, mesh
+from inetlib import conformal, measure, mesh, parallelogram, surfaces
 from inetlib.drawings import beyond_planar, fig03
 
 T, T0 = np.radians(60), np.radians(45)
@@ -47,6 +47,46 @@ def test_cells_of_a_sheared_grid_have_the_angles_asked_for(theta, theta0):
     u, v = u[0, 0], v[0, 0]
     assert np.angle(v / u) == pytest.approx(theta0, rel=1e-9)
     assert np.angle((u + v) / (u - v)) == pytest.approx(theta, rel=1e-9)
+
+
+ISOTHERMAL = [surfaces.SPHERE, surfaces.CATENOID, surfaces.HELICOID, surfaces.conjugate(0.7)]
+
+
+def test_b3_every_isothermal_net_gives_i_nets_of_any_angles_and_others_do_not():
+    rng = np.random.default_rng(3)
+    for theta, theta0 in rng.uniform(0.3, np.pi - 0.3, (25, 2)):
+        (start, up), (right, _) = conformal.sheared_grid(theta, theta0, 1, 1, direction=2 - 1j)
+        a, b = right - start, up - start
+        u, v = rng.uniform(-1, 1, (2, 20))
+        for surface in (*ISOTHERMAL, surfaces.rotational(lambda t: (2 + np.cos(t), 0, np.sin(t)))):
+
+            def net(u, v, surface=surface, a=a, b=b):
+                return surface.coordinates((u * a + v * b).real, (u * a + v * b).imag)
+
+            lam, mu = surfaces.ratios(surfaces.Surface("", net), u, v)
+            if surface in ISOTHERMAL:
+                np.testing.assert_allclose(lam * np.exp(1j * theta), (a + b) / (a - b), rtol=1e-8)
+                np.testing.assert_allclose(np.exp(1j * theta0) / mu, b / a, rtol=1e-8)
+            else:
+                assert np.ptp(lam) > 1e-3 and np.ptp(mu) > 1e-3
+
+
+def test_b3_conversely_constant_ratios_make_linear_parameters_isothermal():
+    """By symbols, for any surface: E and F follow from G and the ratios; x, y as in B3."""
+    lam, mu, E, F, G = sympy.symbols("lam mu E F G", positive=True)
+    net = {E: mu**2 * G}
+    (net[F],) = sympy.solve((E + 2 * F + G - lam**2 * (E - 2 * F + G)).subs(net), F)
+    c = sympy.Symbol("c", real=True)  # cos theta0
+    s = sympy.sqrt(1 - c**2)
+    one, two = (1, 0), (-c / s, mu / s)  # X_x and X_y, for u = x - y cot theta0, v = y mu / sin
+
+    def product(a, b):
+        whole = a[0] * b[0] * E + (a[0] * b[1] + a[1] * b[0]) * F + a[1] * b[1] * G
+        return sympy.simplify(whole.subs(net).subs(c, net[F] / (mu * G)))
+
+    assert product(one, two) == 0
+    assert sympy.simplify(product(two, two) - product(one, one)) == 0
+    assert sympy.simplify(net[F] / (mu * G) - parallelogram.cosines(lam, mu)[1]) == 0
 
 
 @given(angle, angle, point, st.floats(0.01, 100), point)

@@ -192,16 +192,16 @@ def test_e16_the_distances_of_fig_9_are_no_ratios_to_the_diagonal():
         g = glides[row.panel]
         apart = np.linalg.norm(g.start[:, None] - g.result.V, axis=2).max() / g.diagonal
         box = np.ptp(np.concatenate([g.start, g.result.V]), axis=0)
-        assert max(row.there, row.back) < apart <= np.linalg.norm(box) / g.diagonal < 1.25
+        assert max(row.there, row.back) < apart <= np.linalg.norm(box) / g.diagonal < 1.3
         bounds.append(apart)
-    assert (printed > 1.25).tolist() == (printed > bounds).tolist() == but_the_sphere
-    # One unit for all five: as per cent four are within a factor of 5 of our distances from the
+    assert (printed > 1.3).tolist() == (printed > bounds).tolist() == but_the_sphere
+    # One unit for all five: as per cent four are within a factor of 6 of our distances from the
     # net to its start, but the sphere's is hundreds of times smaller.  Per mille fits the
     # catenoid only, and no unit at all makes all five agree within a factor of 10.
     there, back = np.transpose([(row.there, row.back) for row in rows])
     cent, mille = (np.exp(np.abs(np.log(unit * printed / there))) for unit in (0.01, 0.001))
-    assert (cent < 5).tolist() == but_the_sphere and cent[1] > 100
-    assert (mille < 5).tolist() == [False, False, True, False, False]
+    assert (cent < 6).tolist() == but_the_sphere and cent[1] > 100
+    assert (mille < 6).tolist() == [False, False, True, False, False]
     for distances in (there, back):
         quotient = printed / distances  # the same for all five, were it only the unit
         assert np.sqrt(quotient.max() / quotient.min()) > 10

@@ -44,6 +44,8 @@ def test_the_parallelograms_are_what_the_titles_say():
         lengths = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
         cosine = np.einsum("ij,ij->i", a, b) / lengths[0] / lengths[1]
         sides[letter] = np.log(lengths[1] / lengths[0]), cosine
+    for letter in "ABCDE":  # similar
+        assert max(map(np.ptp, sides[letter])) < 1e-11
     for letter in "BD":  # right angles
         assert np.abs(sides[letter][1]).max() < 1e-11
     for letter in "CD":  # equal sides

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq, root
 
 from inetlib import loxodrome, measure, mesh, parallelogram, surfaces
 from inetlib.surfaces import Profile
@@ -213,13 +214,81 @@ def test_the_lam_equation_is_empty_at_theta0_90_and_has_no_root_at_theta_90():
         assert deviation(net, theta, theta0).max() < 1e-2
 
 
-def test_residuals_vanish_at_the_rings_of_their_webs():
-    args = VASE, 1.2, 0.9, 24
-    exact = loxodrome.web(*args)
-    assert abs(loxodrome.residual(*args, exact.t[3], exact.t[4])) < 1e-14
-    for equation in ("lam", "mu"):
-        t = loxodrome.web(*args, method="paper", equation=equation).t
-        assert abs(loxodrome.residual(*args, t[3], t[4], equation)) < 1e-10
+def ratios_of_eq_16(A, B, C, D):
+    """Eq. (16), word for word."""
+    length = np.linalg.norm
+    lam = length(D - A, axis=-1) / length(B - C, axis=-1)
+    return lam, length(B + D - A - C, axis=-1) / length(C + D - A - B, axis=-1)
+
+
+M, ASKED = 24, (1.2, 0.9)
+
+
+def own_ratios(theta, theta0):
+    """(lam, mu) from Eq. (3), one unknown after the other until they agree."""
+    lam = mu = 1.0
+    for _ in range(60):  # (3) is cos theta = cosh(log lam) tanh(log mu), and so for theta0
+        mu = np.exp(np.arctanh(np.cos(theta) / np.cosh(np.log(lam))))
+        lam = np.exp(np.arctanh(np.cos(theta0) / np.cosh(np.log(mu))))
+    return np.array([lam, mu])
+
+
+def own_loxodrome():
+    """Its angle on the vase as a function of the height, by an ODE."""
+
+    def rate(t, _):
+        slope = 0.33 * 1.9 * np.cos(1.9 * t + 0.25)
+        return np.hypot(slope, 1) / (0.72 + 0.33 * np.sin(1.9 * t + 0.25)) / np.tan(ASKED[1])
+
+    found = solve_ivp(rate, (0, 3.2), [0.0], "DOP853", rtol=1e-13, atol=1e-14, dense_output=True)
+    return lambda t: found.sol(t)[0]
+
+
+def own_quads(alpha, t0, t, turn=None):
+    """A, B at the height t0; C, D at t on the loxodromes through A, B, or turned by `turn`."""
+    corners = []
+    for height, angle in ((t0, alpha(t0)), (t, alpha(t) if turn is None else alpha(t0) + turn)):
+        r = 0.72 + 0.33 * np.sin(1.9 * height + 0.25)
+        for x in (angle, angle + 2 * np.pi / M):
+            corners.append(np.stack([r * np.cos(x), r * np.sin(x), height + 0 * x], axis=-1))
+    return corners
+
+
+@pytest.mark.parametrize(("which", "equation"), [(0, "lam"), (1, "mu")])
+def test_eq_16_one_ratio_on_loxodromes_of_an_ode_by_own_brackets(which, equation):
+    alpha, wanted = own_loxodrome(), own_ratios(*ASKED)
+    net, rings = loxodrome.web(VASE, *ASKED, M, 6, "paper", equation), [0.0]
+
+    def off(t):
+        return ratios_of_eq_16(*own_quads(alpha, rings[-1], t))[which] / wanted[which] - 1
+
+    for _ in range(6):  # the first change of sign
+        t = rings[-1] + np.linspace(1e-3, 0.8, 400)
+        change = np.flatnonzero(np.diff(np.sign(off(t))))[0]
+        rings.append(brentq(off, t[change], t[change + 1], xtol=1e-14))
+    np.testing.assert_allclose(net.t, rings, atol=1e-9)
+    found = ratios_of_eq_16(*net.V[net.Q][:, [1, 2, 0, 3]].transpose(1, 0, 2))
+    np.testing.assert_allclose(found[which], wanted[which], rtol=1e-9)
+    assert np.abs(found[1 - which] / wanted[1 - which] - 1).max() > 1e-3
+    values = loxodrome.residual(VASE, *ASKED, M, rings[-1], rings[-1] + t[::20], equation)
+    ratio = ratios_of_eq_16(*own_quads(alpha, rings[-1], rings[-1] + t[::20]))[which]
+    np.testing.assert_allclose(values, np.log(ratio / wanted[which]), atol=1e-9)
+
+
+def test_eq_16_both_ratios_of_exact_webs_and_rings_by_newtons_method():
+    alpha, wanted = own_loxodrome(), own_ratios(*ASKED)
+    net = loxodrome.web(VASE, *ASKED, M)
+    found = ratios_of_eq_16(*net.V[net.Q][:, [1, 2, 0, 3]].transpose(1, 0, 2))
+    np.testing.assert_allclose(found, np.transpose([wanted] * len(net.Q)), rtol=1e-10)
+    for low, high in zip(net.t[:8], net.t[1:9], strict=True):
+
+        def off(x, low=low):
+            return ratios_of_eq_16(*own_quads(alpha, low, *x)) - wanted
+
+        t, _ = root(off, [1.03 * high - 0.03 * low, 0.9 * (alpha(high) - alpha(low))]).x
+        assert t == pytest.approx(high, abs=1e-8)
+        assert abs(loxodrome.residual(VASE, *ASKED, M, low, high)) < 1e-14
+        assert loxodrome.residual(VASE, *ASKED, M, low, 0.9 * high + 0.1 * low) > 1e-5
 
 
 def test_subnets_meet_at_the_angles_of_the_four_directions():

@@ -3,11 +3,12 @@
 import mpmath
 import numpy as np
 import pytest
+import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from inetlib import measure, mesh
+from inetlib import measure, mesh, parallelogram
 
 ONE = np.array([[0, 1, 2, 3]])
 angle = st.floats(0.05, np.pi - 0.05)
@@ -109,26 +110,65 @@ def test_web_angles_are_the_printed_half_angles():
     assert np.cos(web.m13_d1) == pytest.approx((5 - 3 + 5 + 1) / root)
 
 
-@given(angle, angle)
-def test_theta_defect_is_the_difference_of_cotangents(theta, slant):
-    """(13) is d2^2 - d1^2 - 2 d1 d2 = 2A (cot theta0 - cot theta), A = |d1 x d2|."""
-    d1, d2 = 1, 2 * np.sin(slant) * np.exp(1j * theta)
-    theta0 = np.angle((d2 - d1) / (d1 + d2))
-    V, Q = quad((0, 0), (0, 0, 5), (1, 0), (d2.real, d2.imag, 5))
-    wanted = 2 * d2.imag * (1 / np.tan(theta0) - 1 / np.tan(theta)) / (1 + abs(d2) ** 2)
-    assert measure.theta_defect(V, Q).item() == pytest.approx(wanted, abs=1e-12)
+def judged(one, two):
+    """theta_defect and both angles of a quad somewhere in space with these diagonals, scaled."""
+    rng = np.random.default_rng(6)
+    turn, scale = Rotation.from_quat(rng.normal(size=4)), np.exp(rng.uniform(-5, 5))
+    v1, v2 = rng.normal(size=(2, len(one), 3))
+    V = np.stack([v1, v2, v1 + one, v2 + two], axis=1).reshape(-1, 3)
+    V, Q = scale * turn.apply(V), np.arange(len(V)).reshape(-1, 4)
+    return measure.theta_defect(V, Q), *measure.angles(V, Q)
 
 
-@given(angle, st.floats(0.01, 100))
-def test_theta_defect_vanishes_where_theta_is_theta0_and_ignores_scale(theta, scale):
+def test_prop_6_by_symbols_eq_13_says_that_two_cotangents_are_equal():
+    """For any d1, d2 in space: (13) is d2^2 - d1^2 - 2 d1 d2 = 2 A (cot theta0 - cot theta)."""
+    d1, d2 = (sympy.Matrix(sympy.symbols(f"{name}:3", real=True)) for name in "ab")
+    m13, m24 = (d1 + d2) / 2, (d2 - d1) / 2
+    area, half = d1.cross(d2), m13.cross(m24)
+    assert (area - 2 * half).expand().is_zero_matrix  # cot theta = d1 d2 / A, A = |d1 x d2|
+    defect = d2.dot(d2) - d1.dot(d1) - 2 * d1.dot(d2)
+    assert sympy.expand(2 * (2 * m13.dot(m24) - d1.dot(d2)) - defect) == 0
+
+
+def test_prop_6_both_directions_on_1000_quads_each():
+    rng = np.random.default_rng(13)
+    d1, side = rng.normal(size=(2, 1000, 3))
+    one = np.linalg.norm(d1, axis=1)
+    side -= d1 * (np.sum(d1 * side, axis=1) / one**2)[:, None]  # orthogonal to d1
+    x, y = d1, side * (one / np.linalg.norm(side, axis=1))[:, None]
+    theta = rng.uniform(0.05, np.pi - 0.05, 1000)
+    across = np.cos(theta)[:, None] * x + np.sin(theta)[:, None] * y  # as long as d1
+    # theta = theta0 (the unique ratio of Eq. (8)), then Eq. (13)
     lam = np.cos(theta) + np.sqrt(1 + np.cos(theta) ** 2)
-    x, y = lam * np.cos(theta), lam * np.sin(theta)
-    V, Q = quad((0, 0), (3, 1, 4), (1, 0), (3 + x, 1 + y, 4))
-    assert measure.theta_defect(scale * V, Q).item() == pytest.approx(0, abs=1e-14)
-    found = np.array(measure.angles(scale * V, Q)).ravel()
-    np.testing.assert_allclose(found, theta, rtol=1e-12)
-    V[3, 1] += 0.1  # adds 0.2 y + 0.01 to d2^2, and nothing to the rest
-    assert measure.theta_defect(V, Q).item() > 1e-3
+    defect, found, found0 = judged(d1, lam[:, None] * across)
+    np.testing.assert_allclose([found, found0], [theta, theta], rtol=1e-11)
+    np.testing.assert_allclose(defect, 0, atol=1e-13)
+    # Eq. (13): d2 = d1 + w with w^2 = 2 d1^2 (w = d2 - d1), any direction, then theta = theta0
+    w = rng.normal(size=(1000, 3))
+    w *= (2**0.5 * one / np.linalg.norm(w, axis=1))[:, None]
+    defect, found, found0 = judged(d1, d1 + w)
+    np.testing.assert_allclose(defect, 0, atol=1e-13)
+    np.testing.assert_allclose(found, found0, atol=1e-11)
+    assert found.min() < 0.2 and found.max() > 2.9
+    # neither: its sign tells which angle is larger
+    defect, found, found0 = judged(d1, np.exp(rng.uniform(-1, 1, 1000))[:, None] * across)
+    np.testing.assert_array_equal(defect > 0, found > found0)
+    one, two = 1 / np.tan(found), 1 / np.tan(found0)
+    assert np.abs(defect[np.abs(one - two) > 0.1]).min() > 1e-4
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_prop_6_needs_diagonals_that_are_not_parallel(sign):
+    """d2 = (1 +- sqrt 2) d1 fulfils (13), but the parallelogram has collapsed: an end of (9)."""
+    V, Q = quad((0, 0), (3, 1, 4), (1, 0), (4 + sign * 2**0.5, 1, 4))
+    assert measure.theta_defect(V, Q).item() == pytest.approx(0, abs=1e-15)
+    assert measure.angles(V, Q) == (pytest.approx((1 - sign) * np.pi / 2, abs=1e-15),) * 2
+    lam, mu = (x.item() for x in measure.ratios(V, Q))
+    assert (lam, mu) == pytest.approx((2**0.5 + sign, 2**0.5 + sign), rel=1e-14)
+    assert not parallelogram.is_admissible(lam * (1 + sign * 1e-12), mu * (1 + sign * 1e-12))
+    V[3, 0] += 0.1  # parallel, and no solution: the angles are as equal as before
+    assert abs(measure.theta_defect(V, Q).item()) > 0.01
+    assert np.ptp(measure.angles(V, Q)) < 1e-14
 
 
 @given(seeds, st.floats(1e-6, 1e6))

@@ -5,6 +5,7 @@ import functools
 import inspect
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 import nbformat
 import pytest
@@ -21,21 +22,23 @@ EVERYTHING = (
     + [*(f"Fig. {k}" for k in range(1, 14)), "Alg. 1", "Table 1"]
     + [f"App. A.{k}" for k in range(1, 5)]
 )
+RERUN = "test_a_rerun_draws_the_stored_figures"
+CONSTANT = "test_thm_7_constant_ratios_of_tangents_mean_constant_angles"
 BEYOND = [f"B{k}" for k in range(1, 12)]
 
 
 @functools.cache
 def rows(part=0):
-    """A table of PAPER.md, of the paper (0) or beyond it (1): {item: (functions, tests, page)}."""
+    """A table of PAPER.md, of the paper (0) or beyond it (1): {item: its cells}.
+
+    The cells are functions, tests, notebook and what kind of proof it is."""
     text = (ROOT / "PAPER.md").read_text(encoding="utf-8").split("\n## Beyond the paper\n")[part]
     lines = text.splitlines()
-    cells = [[c.strip() for c in line.strip("|").split("|")] for line in lines if line[:1] == "|"]
-    table = {}
-    for item, _, functions, tests, notebook, status in cells[2:]:
+    table, split = {}, ([c.strip() for c in x.strip("|").split("|")] for x in lines if x[:1] == "|")
+    for item, _, functions, tests, notebook, proof in list(split)[2:]:
         assert item not in table, item
-        assert status == "done", item
         quoted = (re.findall(r"`([^`]+)`", cell) for cell in (functions, tests))
-        table[item] = *quoted, notebook
+        table[item] = *quoted, notebook, proof
     return table
 
 
@@ -47,9 +50,117 @@ def headings(notebook):
 
 
 @functools.cache
-def names_in(path):
-    tree = ast.parse((ROOT / path).read_text(encoding="utf-8"))
-    return {n.name for n in ast.walk(tree) if isinstance(n, ast.FunctionDef)}
+def cells(notebook):
+    """The code of a notebook, one text."""
+    found = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
+    return "\n".join(cell.source for cell in found if cell.cell_type == "code")
+
+
+@functools.cache
+def parts(path):
+    """{name: node} of the functions, classes and values that a test file has at its top."""
+    found = {}
+    for node in ast.parse((ROOT / "tests" / path).read_text(encoding="utf-8")).body:
+        targets = node.targets if isinstance(node, ast.Assign) else []
+        names = [n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)]
+        for name in names or [getattr(node, "name", None)]:
+            found.setdefault(name, node)
+        if isinstance(node, ast.ImportFrom):
+            found |= {(a.asname or a.name, node.module.rpartition(".")[2]): a for a in node.names}
+    return found
+
+
+class Words(NamedTuple):
+    """What stands in a test, in its decorators and in the parts of its file that it uses."""
+
+    names: set
+    attributes: set
+    strings: set
+    source: str
+
+
+@functools.cache
+def words(path, test):
+    top, todo, seen = parts(path), [test], {}
+    while todo:
+        name = todo.pop()
+        if name in top and name not in seen:
+            seen[name] = top[name]
+            nodes = list(ast.walk(top[name]))
+            todo += [n.id for n in nodes if isinstance(n, ast.Name)]
+            todo += [n.arg for n in nodes if isinstance(n, ast.arg)]
+    nodes = [n for node in seen.values() for n in ast.walk(node)]
+    texts = {n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)}
+    return Words(
+        {n.id for n in nodes if isinstance(n, ast.Name)},
+        {n.attr for n in nodes if isinstance(n, ast.Attribute)},
+        texts,
+        "\n".join(map(ast.unparse, seen.values())),
+    )
+
+
+def says(path, test, function):
+    """Whether a test names a function, "room.name": as an attribute of its room, or imported."""
+    room, _, name = function.rpartition(".")
+    room, found = room.rpartition(".")[2], words(path, test)
+    imported = name in found.names and (name, room) in parts(path)
+    return imported or (room in found.names and name in found.attributes | found.strings)
+
+
+def touched(functions, tests, notebook):
+    """Those of the functions that the tests name, or the notebook if it is rerun and compared,
+    or another one of them."""
+    stem, run = notebook[1:].partition("]")[0], f"test_notebooks.py::{RERUN}" in tests
+    pairs = [test.split("::") for test in tests]
+    found = {f for f in functions if any(says(*pair, f) for pair in pairs)}
+    found |= {f for f in functions if run and re.search(rf"\b{short(f)}\b", cells(stem))}
+    todo = list(found)
+    while todo:
+        source = inspect.getsource(public()[todo.pop()])
+        new = [f for f in functions if f not in found and re.search(rf"\b{last(f)}\(", source)]
+        found.update(new)
+        todo += new
+    return found
+
+
+def last(name):
+    return re.escape(name.rpartition(".")[2])
+
+
+def short(name):
+    """room.function, without the packages around the room."""
+    return re.escape(".".join(name.split(".")[-2:]))
+
+
+def shown(strength, functions, tests, notebook):
+    """Whether the tests of a row are of the kind that its last column states."""
+    found = [words(*test.split("::")) for test in tests]
+    kind, _, names = strength.partition(": ")
+    if kind == "symbols":
+        return any(re.search(r"\b(?:sp|sympy)\.[sS]ymbol", w.source) for w in found)
+    if kind == "nets":
+        source = " ".join(w.source for w in found).lower()
+        return all(name in source for name in names.split(", "))
+    if kind == "drawing":
+        rooms = {f.split(".")[1] for f in functions if f.startswith("drawings.")}
+        return any(rooms & w.names and {"draw", "drawn"} & (w.attributes | w.names) for w in found)
+    if kind == "rerun":
+        return f"test_notebooks.py::{RERUN}" in tests and notebook
+    count = re.fullmatch(r"(\d+) random", kind)[1]
+    cases = [w for w in found if re.search(r"\b(?:default_rng|given|random_angles)\(", w.source)]
+    often = {"60": "@given("}.get(count)  # as many examples as conftest.py asks for
+    return any(re.search(rf"\b{count}\b", w.source) or (often and often in w.source) for w in cases)
+
+
+def kinds(part):
+    """{"symbols" or "random" ...: the rows with it}, and all numbers of random cases."""
+    found, counts = {}, []
+    for item, (*_, proof) in rows(part).items():
+        for strength in proof.split("; "):
+            kind = strength.partition(": ")[0]
+            counts += map(int, re.findall(r"^\d+", kind))
+            found.setdefault(kind.split()[-1], []).append(item)
+    return found, counts
 
 
 def cited(doc):
@@ -69,20 +180,55 @@ def test_every_numbered_item_stands_exactly_once():
     assert list(rows(1)) == BEYOND
 
 
-@pytest.mark.parametrize(("part", "item"), [(k, item) for k in (0, 1) for item in rows(k)])
+EVERY_ROW = pytest.mark.parametrize(("part", "item"), [(k, i) for k in (0, 1) for i in rows(k)])
+
+
+@EVERY_ROW
 def test_a_row_names_a_function_a_test_and_a_heading_that_exist(part, item):
-    functions, tests, notebook = rows(part)[item]
+    functions, tests, notebook, _ = rows(part)[item]
     assert functions and tests
     for name in functions:
         assert item in citations(part)[name], f"{name} does not cite {item}"
     for name in tests:
         path, _, test = name.partition("::")
-        assert test in names_in(f"tests/{path}"), name
+        assert test in parts(path), name
     stem, heading = re.fullmatch(r"\[(\w+)\]\(notebooks/\1\.ipynb\), (.+)", notebook).groups()
     assert heading == item
     assert re.search(re.escape(item) + r"(?!\d)", headings(stem)), (
         f"{stem} has no heading for {item}"
     )
+
+
+@EVERY_ROW
+def test_the_tests_of_a_row_touch_its_functions_and_are_of_the_kind_it_states(part, item):
+    functions, tests, notebook, proof = rows(part)[item]
+    missed = set(functions) - touched(functions, tests, notebook)
+    assert not missed, f"no test of {item} names {sorted(missed)}"
+    for strength in proof.split("; "):
+        assert shown(strength, functions, tests, notebook), f"{item}: {strength}?"
+
+
+def test_the_checks_of_rows_can_fail():
+    row = ["parallelogram.angles"], [f"test_theorems.py::{CONSTANT}"], "[4_isogonal_nets](...)"
+    assert touched(*row) == set()
+    assert touched(["surfaces.ratios"], *row[1:]) == {"surfaces.ratios"}
+    for strength in ("symbols", "99 random", "nets: pyramid", "drawing", "rerun"):
+        assert not shown(strength, *row)
+    assert shown("100 random", *row) and shown("nets: sphere", *row)
+
+
+def test_paper_md_counts_its_rows_by_the_kind_of_their_proof():
+    text = " ".join((ROOT / "PAPER.md").read_text(encoding="utf-8").split())
+    for part in (0, 1):
+        found, counts = kinds(part)
+        assert {*found} == {"symbols", "random", "nets", "drawing", "rerun"}
+        stated = (
+            f"{len(found['symbols'])} of {len(rows(part))} rows are proved by symbols,"
+            f" {len(found['random'])} over {min(counts)} to {max(counts)} random cases,"
+            f" {len(found['nets'])} on nets, {len(found['drawing'])} by what is drawn and"
+            f" {len(found['rerun'])} by a rerun"
+        )
+        assert stated in text, stated
 
 
 def test_every_docstring_that_cites_an_item_stands_in_its_row():
@@ -94,7 +240,7 @@ def test_every_docstring_that_cites_an_item_stands_in_its_row():
 
 def test_every_erratum_has_a_test_and_each_number_is_accounted_for():
     text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
-    found, done = names_in("tests/test_errata.py"), []
+    found, done = [name for name in parts("test_errata.py") if isinstance(name, str)], []
     kinds = re.split(r"^# ", text, flags=re.MULTILINE)[2:]
     heads = {"Misprints": "Must be", "Conditions that are missing": "Must be"}
     heads |= {"Readings": "Read as", "Words": None}

@@ -38,6 +38,27 @@ A, B, C, D = drawn(LAM, THETA)
 MU, THETA0 = abs(D - B) / abs(C - A), between(D - B, A - C)
 
 
+def equal_ratio(theta):
+    """lam of the drawn parallelogram with AOD = ABC, by bisection: AOD falls as lam grows."""
+    low, high = np.full_like(theta, 0.1), np.full_like(theta, 9.0)
+    for _ in range(60):
+        middle = (low + high) / 2
+        a, b, c, d = drawn(middle, theta)
+        above = between(d - b, a - c) > theta
+        low, high = np.where(above, middle, low), np.where(above, high, middle)
+    return middle
+
+
+EQUAL = rng.uniform(0.05, np.pi - 0.05, 1000)  # theta = theta0, drawn as well
+RATIO = equal_ratio(EQUAL)
+A1, B1, C1, D1 = drawn(RATIO, EQUAL)
+lam_, mu_ = sympy.symbols("lam mu", positive=True)
+
+
+def same(one, other):
+    return sympy.simplify(sympy.factor(one - other, deep=True)) == 0
+
+
 def exact_ratios(theta, theta0):
     """The admissible root of two quadratics, put to the proof by the cosine rule: 50 digits."""
     theta, theta0 = mpmath.mpf(theta), mpmath.mpf(theta0)
@@ -69,10 +90,13 @@ def test_100000_random_angles_survive_the_way_to_ratios_and_back():
     np.testing.assert_allclose(back, (theta, theta0), rtol=0, atol=1e-12)
 
 
-def test_the_printed_theta_parallelograms_have_the_printed_ratio():
-    for degrees, lam in ((60, GOLDEN), (45, (2**0.5 + 6**0.5) / 2), (30, (3**0.5 + 7**0.5) / 2)):
-        found = parallelogram.ratios(*np.radians([degrees, degrees]))
-        assert found == pytest.approx((lam, lam), rel=1e-14)
+def test_b1_the_ratios_of_two_angles_have_these_angles_by_symbols():
+    angles = sympy.symbols("theta theta0", positive=True)
+    lam, mu = (ratio.rewrite(sympy.log) for ratio in parallelogram.ratios(*angles))
+    for cosine, one in zip(parallelogram.cosines(lam, mu), angles, strict=True):
+        assert sympy.simplify(cosine**2 - sympy.cos(one) ** 2) == 0
+    larger = np.array(parallelogram.ratios(THETA, THETA0)[::-1]) > 1  # mu > 1: theta < 90 degrees
+    np.testing.assert_array_equal(larger, np.cos([THETA, THETA0]) > 0)
 
 
 @pytest.mark.parametrize(
@@ -90,11 +114,6 @@ def test_the_printed_theta_parallelograms_have_the_printed_ratio():
 def test_known_angles_have_the_known_ratios(theta, theta0, lam, mu):
     found = parallelogram.ratios(np.radians(theta), np.radians(theta0))
     assert found == pytest.approx((lam, mu), abs=6e-6)
-
-
-def test_ratio_two_twice_gives_the_printed_arccos_three_quarters():
-    assert parallelogram.angles(2, 2) == pytest.approx([np.arccos(0.75)] * 2, rel=1e-14)
-    assert parallelogram.angles(0.5, 0.5) == pytest.approx([np.pi - np.arccos(0.75)] * 2)
 
 
 def test_angles_are_those_of_the_drawn_parallelogram():
@@ -125,9 +144,79 @@ def test_diagonals_are_those_of_the_drawn_parallelogram():
     np.testing.assert_allclose(found, [3.5 * abs(C - A), 3.5 * abs(D - B)], rtol=1e-12)
 
 
-def test_diagonal_ratio_of_lam_equal_mu_is_root_two_for_p():
-    _, b, p, q = parallelogram.lengths(1.7, 1.7)
-    assert (b, p, q) == pytest.approx((1.7, 2**0.5, 1.7 * 2**0.5), rel=1e-15)
+def test_eq_2_the_squares_of_the_diagonals_are_twice_those_of_the_sides():
+    a, b, theta = sympy.symbols("a b theta", positive=True)
+    p, q = parallelogram.diagonals(a, b, theta)
+    assert same(p**2 + q**2, 2 * (a**2 + b**2))
+    a, b, p, q = parallelogram.lengths(lam_, mu_)
+    assert same(p**2 + q**2, 2 * (a**2 + b**2)) and (a, b) == (1, lam_) and same(q, mu_ * p)
+    for p, q in (parallelogram.diagonals(1, LAM, THETA), parallelogram.lengths(LAM, MU)[2:]):
+        np.testing.assert_allclose(p**2 + q**2, abs(B - C) ** 2 * 2 + abs(A - B) ** 2 * 2)
+        np.testing.assert_allclose(q / p, abs(B - D) / abs(A - C), rtol=1e-10)
+
+
+def test_eq_7_equal_angles_and_only_they_have_the_diagonals_root_two_and_root_two_lam():
+    root = sympy.sqrt(2)
+    lengths = parallelogram.lengths(lam_, lam_)
+    assert all(map(same, lengths, (1, lam_, root, root * lam_)))
+    p = parallelogram.lengths(lam_, mu_)[2]
+    assert sympy.solve(p - root, mu_) == [lam_]
+    np.testing.assert_allclose(abs(A1 - C1), 2**0.5, rtol=1e-11)
+    np.testing.assert_allclose(abs(B1 - D1), 2**0.5 * RATIO, rtol=1e-11)
+    assert abs(abs(A - C) / 2**0.5 - 1)[abs(THETA - THETA0) > 0.1].min() > 1e-3
+
+
+def test_eq_8_one_ratio_fixes_the_one_angle_and_back():
+    assert all(same(x, (lam_ - 1 / lam_) / 2) for x in parallelogram.cosines(lam_, lam_))
+    np.testing.assert_allclose((RATIO - 1 / RATIO) / 2, np.cos(EQUAL), atol=1e-12)
+    np.testing.assert_allclose(parallelogram.ratios(EQUAL, EQUAL), [RATIO, RATIO], rtol=1e-12)
+    np.testing.assert_allclose(parallelogram.angles(RATIO, RATIO), [EQUAL, EQUAL], atol=1e-11)
+    for degrees, lam in ((60, GOLDEN), (45, (2**0.5 + 6**0.5) / 2), (30, (3**0.5 + 7**0.5) / 2)):
+        assert equal_ratio(np.radians([degrees])) == pytest.approx(lam, rel=1e-14)  # as printed
+        assert parallelogram.ratios(*np.radians([degrees, degrees])) == pytest.approx((lam, lam))
+    for lam, angle in ((2, np.arccos(0.75)), (0.5, np.pi - np.arccos(0.75))):
+        assert parallelogram.angles(lam, lam) == pytest.approx([angle, angle], rel=1e-14)
+
+
+def test_eq_9_the_one_ratio_runs_from_root_two_minus_to_root_two_plus_one():
+    ends = [sympy.solve(parallelogram.cosines(lam_, lam_)[0] - end, lam_) for end in (-1, 1)]
+    assert ends == [[sympy.sqrt(2) - 1], [sympy.sqrt(2) + 1]]
+    assert parallelogram.lam_range(ends[0][0])[0].equals(ends[0][0])  # where lam = mu meets (4)
+    assert parallelogram.lam_range(ends[1][0])[1].equals(ends[1][0])
+    low, high = 2**0.5 - 1, 2**0.5 + 1
+    assert low < RATIO.min() < 1.01 * low and 0.99 * high < RATIO.max() < high
+    lam = np.exp(np.random.default_rng(SEED).uniform(-1.5, 1.5, 1000))
+    found = parallelogram.is_admissible(lam, lam)
+    np.testing.assert_array_equal(found, (low < lam) & (lam < high))
+    np.testing.assert_array_equal(found, [constructed(x, x) for x in lam])
+
+
+def test_eq_10_the_half_angles_of_equal_angles():
+    root = sympy.sqrt(2)
+    printed = root * (3 * lam_**2 - 1) / (4 * lam_**2), root * (1 + lam_**2) / (4 * lam_)
+    assert all(map(same, parallelogram.half_cosines(lam_, lam_), printed))
+    assert all(map(same, map(sympy.cos, parallelogram.half_angles(lam_, lam_)), printed))
+    halves = between(D1 - B1, A1 - B1), between(C1 - B1, D1 - B1)
+    for formula, half in zip(printed, halves, strict=True):
+        values = sympy.lambdify(lam_, formula)(RATIO)
+        np.testing.assert_allclose(values, np.cos(half), atol=1e-11)
+    np.testing.assert_allclose(parallelogram.half_angles(RATIO, RATIO), halves, atol=1e-10)
+
+
+def test_app_a1_the_triangles_abd_and_odc_are_similar_exactly_where_the_angles_are_equal():
+    """Three sides of each, as lengths of `lengths` by symbols and as drawn: one quotient."""
+    a, b, p, q = parallelogram.lengths(lam_, lam_)
+    for long, short in ((b, q / 2), (q, b), (a, p / 2)):
+        assert same(long / short, sympy.sqrt(2))
+
+    def quotients(a, b, c, d):
+        middle = (a + c) / 2
+        long, short = (a - b, b - d, d - a), (middle - d, d - c, c - middle)
+        return np.array([abs(x) / abs(y) for x, y in zip(long, short, strict=True)])
+
+    np.testing.assert_allclose(quotients(A1, B1, C1, D1), 2**0.5, rtol=1e-11)
+    others = np.ptp(quotients(A, B, C, D), axis=0)
+    assert others[abs(THETA - THETA0) > 0.1].min() > 1e-3
 
 
 EXTREME = [1e-6, 1e-5, 1e-3, 0.1, 1, np.pi / 2, 2, 3, np.pi - 1e-3, np.pi - 1e-6]
@@ -230,11 +319,25 @@ def literal_eq_4(lam, mu):
     return lam > 0 and mu > 0 and within(lam, mu) and within(mu, lam)
 
 
-def test_is_admissible_is_eq_4_on_random_ratios():
+def constructed(lam, mu):
+    """Whether a triangle of the sides 1, lam and p closes, in exact rational arithmetic.
+
+    A = x + iy with |A| = lam and |A - 1| = p, over B = 0 and C = 1; then D = A + 1."""
+    lam, mu = Fraction(lam), Fraction(mu)
+    p2 = 2 * (1 + lam**2) / (1 + mu**2)
+    x = (1 + lam**2 - p2) / 2
+    assert 1 + 2 * x + lam**2 == mu**2 * p2  # |D - B| = mu |C - A|
+    return lam**2 > x**2
+
+
+def test_eq_4_and_is_admissible_tell_which_parallelograms_can_be_constructed():
     lam, mu = np.exp(np.random.default_rng(SEED).uniform(-2, 2, (2, 4000)))
-    wanted = [literal_eq_4(x, y) for x, y in zip(lam, mu, strict=True)]
+    wanted = [constructed(x, y) for x, y in zip(lam, mu, strict=True)]
     assert 1000 < sum(wanted) < 3000
+    assert [literal_eq_4(x, y) for x, y in zip(lam, mu, strict=True)] == wanted
     np.testing.assert_array_equal(parallelogram.is_admissible(lam, mu), wanted)
+    low, high = parallelogram.lam_range(mu)
+    np.testing.assert_array_equal((low < lam) & (lam < high), wanted)
 
 
 def test_is_admissible_near_and_on_the_border_of_ones_nonsense_scalars_and_arrays():
@@ -257,22 +360,34 @@ def test_is_admissible_near_and_on_the_border_of_ones_nonsense_scalars_and_array
     assert parallelogram.is_admissible([], []).shape == (0,)
 
 
-def test_lam_range_is_the_printed_interval_and_infinite_at_one():
-    assert parallelogram.lam_range(3.0) == pytest.approx((0.5, 2.0), rel=1e-15)
-    assert parallelogram.lam_range(0.5) == pytest.approx((1 / 3, 3.0), rel=1e-15)
+def test_eq_6_the_range_ends_where_the_triangle_of_two_sides_and_a_diagonal_collapses():
+    mu = 1 + sympy.Symbol("x", positive=True)
+    twice = 2 * (1 + lam_**2)  # (1 + mu^2) p^2
+    ends = sympy.solve(twice - (1 + mu**2) * (1 - lam_) ** 2, lam_)  # p = |1 - lam|
+    assert sorted(map(str, map(sympy.factor, ends))) == sorted(
+        str(sympy.factor(end)) for end in parallelogram.lam_range(mu)
+    )
+    printed = (mu - 1) / (mu + 1), (mu + 1) / (mu - 1)
+    assert all(map(same, parallelogram.lam_range(mu), printed))
+    other = sympy.expand((1 + mu**2) * (1 + lam_) ** 2 - twice)  # p < 1 + lam always
+    assert all(term.is_positive for term in other.args)
+    longer = MU > 1
+    low, high = (MU[longer] - 1) / (MU[longer] + 1), (MU[longer] + 1) / (MU[longer] - 1)
+    assert (low < LAM[longer]).all() and (LAM[longer] < high).all() and longer.sum() > 300
+    np.testing.assert_array_equal(longer, np.cos(THETA) > 0)
+    np.testing.assert_allclose(parallelogram.lam_range(MU[longer]), (low, high), rtol=1e-15)
+    for part in np.random.default_rng(SEED).uniform(1e-6, 1, (500, 3)):
+        m = 1 + 9 * part[0]
+        start, stop = (m - 1) / (m + 1), (m + 1) / (m - 1)
+        assert constructed(start + part[1] * (stop - start) * (1 - 1e-9), m)
+        assert not constructed(start * part[2], m) and not constructed(stop / part[2], m)
+
+
+def test_the_range_is_infinite_at_one_and_takes_arrays():
     assert parallelogram.lam_range(1.0) == (0.0, np.inf)
-    low, high = parallelogram.lam_range([[1.0, 3.0]])
-    np.testing.assert_array_equal(low, [[0.0, 0.5]])
-    np.testing.assert_array_equal(high, [[np.inf, 2.0]])
-    mu = sympy.Symbol("mu", positive=True)
-    low, high = parallelogram.lam_range(mu)
-    assert sympy.simplify(low * high) == 1
-    assert low.subs(mu, 3) == sympy.Rational(1, 2)
-
-
-def test_lam_range_for_theta_parallelograms_ends_at_root_two_plus_minus_one():
-    for mu in (2**0.5 - 1, 2**0.5 + 1):  # Eq. (9): where lam = mu meets the border
-        assert mu == pytest.approx(parallelogram.lam_range(mu)[mu > 1], rel=1e-15)
+    low, high = parallelogram.lam_range([[1.0, 3.0, 0.5]])
+    np.testing.assert_allclose(low, [[0.0, 0.5, 1 / 3]], rtol=1e-15)
+    np.testing.assert_allclose(high, [[np.inf, 2.0, 3.0]], rtol=1e-15)
 
 
 BAD_RATIOS = [
@@ -357,14 +472,7 @@ def test_exact_numbers_give_exact_ones_and_symbols_the_cosine_rule():
     assert sympy.simplify((p**2 + q**2 - 2 * p * q * cos_theta0) / 4 - 1) == 0
     p, q = parallelogram.diagonals(1, lam, theta)
     assert sympy.simplify(p**2 - (1 + lam**2 - 2 * lam * sympy.cos(theta))) == 0
-    assert sympy.simplify(p**2 + q**2 - 2 * (1 + lam**2)) == 0
-
-
-def test_exact_half_angles_have_the_printed_cosines():
-    lam, mu = sympy.sqrt(5), sympy.sqrt(2)
-    halves = parallelogram.half_angles(lam, mu)
-    for half, cosine in zip(halves, parallelogram.half_cosines(lam, mu), strict=True):
-        assert sympy.simplify(sympy.cos(half) - cosine) == 0
+    assert sympy.simplify(q**2 - (1 + lam**2 + 2 * lam * sympy.cos(theta))) == 0
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Whether a cell that was run again shows what is stored below it, within tolerances.
 
-Text may differ by one unit of the last digit it shows, pictures by a little antialiasing (see
+Text may differ by one unit of the last digit it shows, pictures by a little antialiasing and tone (see
 `inetlib.drawings.same`).  Two tags of a cell say that more may differ, and why:
   timing   seconds differ from run to run: what is stored stays
   view     OpenGL draws otherwise on every graphics card: pictures need only look alike"""
@@ -40,7 +40,7 @@ def tags(cell):
     return cell.metadata.get("tags", [])
 
 
-def kept(stored, fresh, looks=(same.LEVELS, same.MEAN)):
+def kept(stored, fresh, looks=same.FEW):
     """Whether the outputs of the stored cell can stay, in the light of a fresh run of it.
 
     looks: levels and mean, see `same.picture`."""
@@ -71,10 +71,15 @@ def shown(cell):
     return found
 
 
+def few_tones(picture):
+    """A PNG in base64 as it is stored: see `same.few_tones`."""
+    return base64.b64encode(same.few_tones(base64.b64decode(picture))).decode()
+
+
 def _same(old, new, looks):
     (kind, one), (other, two) = old, new
     if kind != other:
         return False
     if kind == "image/png":
-        return same.picture(*(base64.b64decode(x) for x in (one, two)), *looks)
+        return same.picture(*map(base64.b64decode, (one, few_tones(two))), *looks)
     return same.text(one, two) if isinstance(one, str) and isinstance(two, str) else one == two

@@ -157,8 +157,12 @@ def keep(cell, stored):
     """Keep what is stored below the cell where the fresh outputs show the same."""
     if outputs.kept(stored, cell):
         cell.outputs = stored.outputs
-    elif "view" in outputs.tags(cell):  # without OpenGL's warnings
+        return
+    if "view" in outputs.tags(cell):  # without OpenGL's warnings
         cell.outputs = [o for o in cell.outputs if o.get("name") != "stderr"]
+    for output in cell.outputs:
+        if picture := output.get("data", {}).get("image/png"):
+            output.data["image/png"] = outputs.few_tones(picture)
 
 
 def store(notebook, path):
