@@ -1,6 +1,6 @@
 """Whether a cell that was run again shows what is stored below it, within tolerances.
 
-Text may differ by one unit of the last digit it shows, pictures by a little antialiasing and tone (see
+Text may differ by one unit of the last digit it shows, pictures by a little in their tones (see
 `inetlib.drawings.same`).  Two tags of a cell say that more may differ, and why:
   timing   seconds differ from run to run: what is stored stays
   view     OpenGL draws otherwise on every graphics card: pictures need only look alike"""
