@@ -22,6 +22,7 @@ HOLLOWS = (0.012, 0.3), (0.05, 0.25)  # radius and strength of the darkening in 
 CREASE = 0.025  # of the scene's size: a step in depth that gets a silhouette line
 LINE = 0.55  # brightness of these lines
 APART = 1.5  # pixels between the points of a curve that are tried
+NEXT = 1e-6  # pixels: closer points of a curve are one
 
 
 class Buffer(NamedTuple):
@@ -226,7 +227,7 @@ def in_front(scene: Picture, view: Callable, line: ArrayLike, layers: int = 1) -
     for run in runs:
         if seen[run[0]] and len(run) > 1:
             start, end = tried[run[[0, -1]]]
-            inner = way[(way > start) & (way < end)]
+            inner = way[(way > start + NEXT) & (way < end - NEXT)]
             found.append(_at(line, way, np.concatenate([[start], inner, [end]])))
     return found
 
