@@ -13,9 +13,7 @@ from . import mesh, parallelogram
 
 def vectors(V: ArrayLike, Q: ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The diagonals d1, d2 and the medial lines m13, m24 of all faces: (f, 3).  Paper: Thm 11."""
-    V, Q = mesh.check_arrays(V, Q)
-    d1 = V[Q[:, 2]] - V[Q[:, 0]]
-    d2 = V[Q[:, 3]] - V[Q[:, 1]]
+    d1, d2 = _diagonals(V, Q)
     return d1, d2, (d1 + d2) / 2, (d2 - d1) / 2
 
 
@@ -28,6 +26,12 @@ def _vectors_and_lengths(V, Q):
             words = f"the face {{}} has a {what} of length zero: no ratio or angle there"
             raise mesh.Fault(words, np.asarray(Q)[np.argmin(length)])
     return found, lengths
+
+
+def _diagonals(V, Q):
+    """The diagonals d1, d2 of faces that are checked."""
+    V, Q = mesh.check_arrays(V, Q)
+    return V[Q[:, 2]] - V[Q[:, 0]], V[Q[:, 3]] - V[Q[:, 1]]
 
 
 def _dot(a, b):
@@ -58,6 +62,12 @@ def angles(V: ArrayLike, Q: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     Paper: Def. 3, Prop. 13."""
     (d1, d2, m13, m24), _ = _vectors_and_lengths(V, Q)
     return _angle(d1, d2), _angle(m13, m24)
+
+
+def faces(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
+    """lam, mu, theta, theta0 of every face, (4, f): `ratios` and `angles` at once."""
+    (d1, d2, m13, m24), (one, two, three, four) = _vectors_and_lengths(V, Q)
+    return np.stack([two / one, three / four, _angle(d1, d2), _angle(m13, m24)])
 
 
 class WebAngles(NamedTuple):
@@ -189,19 +199,19 @@ def nonconvex(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
     The angles know nothing of them, as they do not see where the diagonals lie.
 
     Paper: B11."""
-    d1, d2, _, m24 = vectors(V, Q)
+    d1, d2 = _diagonals(V, Q)
     v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
-    apart = v2 - v1 + m24  # from the middle of v1 v3 to the middle of v2 v4
+    apart = v2 - v1 + (d2 - d1) / 2  # from the middle of v1 v3 to the middle of v2 v4
     one, two, both = _dot(d1, d1), _dot(d2, d2), _dot(d1, d2)
     along, across = _dot(apart, d1), _dot(apart, d2)
     # They cross at these parts of d1 and d2 from their middles, times |d1 x d2|^2.
-    parts = np.abs([along * two - across * both, along * both - across * one])
-    return np.flatnonzero((parts > (0.5 + 1e-9) * (one * two - both**2)).any(axis=0))
+    parts = np.abs(along * two - across * both), np.abs(along * both - across * one)
+    return np.flatnonzero(np.maximum(*parts) > (0.5 + 1e-9) * (one * two - both**2))
 
 
 def flipped(V: ArrayLike, Q: ArrayLike, neighbours: np.ndarray | None = None) -> np.ndarray:
     """The flipped faces (see `quality`); neighbours: `mesh.face_neighbours(Q)` if known."""
-    d1, d2, _, _ = vectors(V, Q)
+    d1, d2 = _diagonals(V, Q)
     neighbours = mesh.face_neighbours(Q) if neighbours is None else neighbours
     return _against(_normals(d1, d2, Q)[0], neighbours)
 

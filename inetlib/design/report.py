@@ -77,8 +77,7 @@ def report(
     polygons: faces that are no quads; lam, mu, theta, theta0 (radians): what was asked for.
     ValueError where a face has collapsed."""
     wanted = dict(zip(NAMES, (lam, mu, theta, theta0), strict=True))
-    values = *measure.ratios(V, Q), *measure.angles(V, Q)
-    spreads = map(measure.spread, values, wanted.values())
+    spreads = map(measure.spread, measure.faces(V, Q), wanted.values())
     quality = measure.quality(V, Q)
     shape = (getattr(quality, name) for name in SHAPE)
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)

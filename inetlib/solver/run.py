@@ -85,10 +85,10 @@ def judge(
 
     residual: that of the two logarithms if None.  ValueError where V is no net: a face has
     collapsed, a coordinate is not finite, the ratios are those of no parallelogram."""
-    off = measure.deviations(V, Q, *angles(wanted, s))
+    found = measure.faces(V, Q)
+    off = np.abs(found[2:] - np.reshape(angles(wanted, s), (2, 1)))
     if residual is None:
-        found = np.log(np.stack(measure.ratios(V, Q)))
-        residual = np.sum((found - logs(wanted, s)[0][:, None]) ** 2)
+        residual = np.sum((np.log(found[:2]) - logs(wanted, s)[0][:, None]) ** 2)
     spread = (float(f(x)) for x in off for f in (np.max, np.mean))
     faults = len(measure.flipped(V, Q, neighbours)), len(measure.nonconvex(V, Q))
     return Step._make([*step, float(residual), *spread, float(size), *faults])
@@ -276,9 +276,9 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
     """The goals of the first steps, one each; the last one is the goal itself."""
     if via == "jump":
         return [given.goal]
-    found = *measure.angles(given.V, given.Q), *np.log(measure.ratios(given.V, given.Q))
-    means = (float(x.mean()) for x in found)
-    here = dict(zip(("theta", "theta0", "lam", "mu"), means, strict=True))
+    lam, mu, theta, theta0 = measure.faces(given.V, given.Q)
+    found = {"theta": theta, "theta0": theta0, "lam": np.log(lam), "mu": np.log(mu)}
+    here = {name: float(x.mean()) for name, x in found.items()}
 
     def leg(goal):
         names = ("theta", "theta0") if goal.kind == "angles" else (goal.kind,) * len(goal.values)
