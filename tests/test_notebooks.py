@@ -117,7 +117,7 @@ def test_lessons_have_links_captions_folded_proofs_and_errata_in_boxes(path):
             assert after.cell_type == "markdown" and re.fullmatch(r"\*[^*\n]+\.\*", caption), (
                 caption
             )
-        if cell.source.startswith("### Proof\n\n"):
+        if cell.source.startswith("#### Proof\n\n"):
             assert len(cell.source.splitlines()) == 3 and after.metadata.jupyter.source_hidden
     for cell in cells:
         if cell.cell_type == "code":
