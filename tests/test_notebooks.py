@@ -7,9 +7,11 @@ pinned one need only look alike."""
 
 import base64
 import io
+import re
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib.image
@@ -22,7 +24,9 @@ from inetlib.drawings import same
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+LESSONS = [path for path in NOTEBOOKS if path.stem >= "5"]
 MANIFEST = publish.read_manifest(ROOT / "figures")
+NOT_PRIVATE = "_replace", "_asdict", "_fields", "_make"  # of a named tuple
 
 
 def cells_of(path, kind="code"):
@@ -96,6 +100,35 @@ def test_stored_notebooks_have_a_guide_exercises_outputs_and_pictures(path):
     assert pictures
     for picture in pictures:  # shows something
         assert min(picture.shape[:2]) > 100 and picture[..., :3].std() > 0.02
+
+
+@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
+def test_lessons_have_links_captions_folded_proofs_and_errata_in_boxes(path):
+    cells = nbformat.read(path, as_version=4).cells
+    k = NOTEBOOKS.index(path)
+    beside = [p.name for p in NOTEBOOKS[k - 1 : k + 2] if p != path]
+    links = re.findall(r"\]\(([^)]+)\)", cells[0].source.splitlines()[2])
+    assert links == [*beside, "../PAPER.md", "../ERRATA.md"]
+    text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
+    for cell, after in pairwise(cells):
+        outputs_of = cell.outputs if cell.cell_type == "code" else []
+        if any("image/png" in output.get("data", {}) for output in outputs_of):
+            caption = after.source
+            assert after.cell_type == "markdown" and re.fullmatch(r"\*[^*\n]+\.\*", caption), (
+                caption
+            )
+        if cell.source.startswith("#### Proof\n\n"):
+            assert len(cell.source.splitlines()) == 3 and after.metadata.jupyter.source_hidden
+    for cell in cells:
+        if cell.cell_type == "code":
+            private = set(re.findall(r"(?:\.|import )(_[a-z]\w*)", cell.source))
+            assert private <= set(NOT_PRIVATE), private
+        for line in cell.source.splitlines() if cell.cell_type == "markdown" else ():
+            boxed = re.match(
+                r"> \*\*Erratum (E\d+)\.\*\* .* See \[ERRATA\]\(\.\./ERRATA\.md\)\.$", line
+            )
+            assert boxed or not re.search(r"\bE\d+\b", line), line
+            assert boxed is None or f"## {boxed[1]} " in text
 
 
 def test_the_folder_of_figures_holds_what_the_manifest_names():

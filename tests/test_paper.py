@@ -43,10 +43,11 @@ def rows(part=0):
 
 
 @functools.cache
-def headings(notebook):
+def headings(notebook, part):
+    """The headings of a notebook, or (1) the small lines below them, as one line."""
     cells = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
     lines = [line for c in cells if c.cell_type == "markdown" for line in c.source.splitlines()]
-    return " ".join(line for line in lines if line.startswith("#"))
+    return " ".join(line for line in lines if line.startswith("<small>" if part else "#"))
 
 
 @functools.cache
@@ -194,7 +195,7 @@ def test_a_row_names_a_function_a_test_and_a_heading_that_exist(part, item):
         assert test in parts(path), name
     stem, heading = re.fullmatch(r"\[(\w+)\]\(notebooks/\1\.ipynb\), (.+)", notebook).groups()
     assert heading == item
-    assert re.search(re.escape(item) + r"(?!\d)", headings(stem)), (
+    assert re.search(re.escape(item) + r"(?!\d)", headings(stem, part)), (
         f"{stem} has no heading for {item}"
     )
 

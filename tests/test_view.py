@@ -142,6 +142,22 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
         np.testing.assert_array_equal([W[0] for W in door.nets.values()], [V, V])
 
 
+def test_in_the_round_shows_two_families_or_says_what_is_missing(monkeypatch):
+    asked = []
+    monkeypatch.setattr(notebook, "turn", lambda *net, **look: asked.append((net, look)))
+    monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
+    monkeypatch.setattr(notebook, "person", lambda: False)
+    assert explorer.in_the_round(V, Q) == "no OpenGL" and not asked
+    monkeypatch.setattr(notebook, "person", lambda: True)  # the browser draws
+    explorer.in_the_round(V, Q, view=(1.0, 0.2))
+    monkeypatch.setattr(view, "available", lambda: (True, ""))
+    monkeypatch.setattr(notebook, "person", lambda: False)
+    explorer.in_the_round(V, Q)
+    assert [look["view"] for _, look in asked] == [(1.0, 0.2), (-0.9, 0.35)]
+    for (_, _, families), _ in asked:
+        assert [len(lines) > 0 for lines in families] == [True, True, False, False]
+
+
 def drawn(*options, **more):
     """The picture of a scene."""
     return view.picture(view.scene(*options, **more))

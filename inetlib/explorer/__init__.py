@@ -3,7 +3,7 @@
 `session` is one explorer without a page; `scene`, `page`, `app` and `serve` are its page, and
 need the packages of the extra `view`."""
 
-__all__ = ["show", "turn"]
+__all__ = ["in_the_round", "show", "turn"]
 
 
 def __getattr__(name):

@@ -91,6 +91,16 @@ def turn(
     return Live(address, picture or session.save(".png", *view), height=480)
 
 
+def in_the_round(V: np.ndarray, Q: np.ndarray, view: tuple = (-0.9, 0.35)) -> Any:
+    """`turn` with the u- and v-curves only; a sentence for a reader where no picture can be made.
+
+    view: azimuth and elevation.  For cells tagged `view`, see tools/outputs.py."""
+    works, sentence = shaded.available()
+    if not (works or person()):
+        return sentence
+    return turn(V, Q, mesh.polylines(Q)._replace(d1=[], d2=[]), width=0.006, view=view)
+
+
 def _change(session, **values):
     if problems := session.change(**values):
         raise ValueError("; ".join(problems))
