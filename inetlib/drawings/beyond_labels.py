@@ -26,7 +26,7 @@ def gallery():
         found[f"C{k}"] = (f"cap, {sides} sides", *examples.polar_cap(sides, 3))
     for k, turns in ((3, 3), (4, 4)):
         found[f"C{k}"] = (f"{turns} turns", *mesh.polygon_rings(turns, 1)[:2], None)
-    found["C5"] = ("Möbius strip", *examples.moebius_strip(26, 2), None)
+    found["C5"] = ("M\u00f6bius strip", *examples.moebius_strip(26, 2), None)
     return found
 
 

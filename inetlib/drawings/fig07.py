@@ -12,7 +12,7 @@ HIGH = 8.2  # columns are as wide as a panel is high
 GEODESIC = ((0, 0, 0), (0.3, -0.8, 0.1), (0.6, -0.8, 0.3), (0.9, 0, 0.4))
 EDITED = ((0, 0, 0), (0.1, -1, -0.1), (0.8, -1, 0.6), (0.9, 0, 0.4))
 TITLES = {"A": "$k=0$: sheared grid in the plane", "B": "$k=1/4$", "C": "$k=1/2$", "D": "$k=3/4$"}
-TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "Bézier geodesic", "H": "moved points"}
+TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "B\u00e9zier geodesic", "H": "moved points"}
 
 
 @drawn("theta", "theta0", "azimuth", "elevation")

@@ -18,7 +18,7 @@ CENTRES = {"A": (2.9, 0, 0.7), "B": (2, -1, 1.1), "C": (0.5, -3.6, 0.6)}  # of t
 CENTRES |= {"D": (2.9, 0, 0), "E": (0, 0, 4.8)}
 IMAGE_CAMERAS = {"A": (-35, 30), "B": (-75, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
 GOALS = {2: (80 * DEGREE, 45 * DEGREE), 4: (50 * DEGREE, 50 * DEGREE)}
-TITLES = {1: "(63.43*, 45*)", 2: "(80*, 45*)", 3: "Möbius image", 4: "(50*, 50*)"}  # * degrees
+TITLES = {1: "(63.43*, 45*)", 2: "(80*, 45*)", 3: "M\u00f6bius image", 4: "(50*, 50*)"}  # * degrees
 # distances, printed for column 4 only and without saying in which unit
 PRINTED = {"A4": 1.959, "B4": 0.016, "C4": 38.593, "D4": 3.120, "E4": 9.464}
 MARGIN = 1.0  # the surface goes on beyond the start by this much of u and v

@@ -63,7 +63,7 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
         patches.enlarged(axes[letter], [0.5, 0, 0.5, 0.27], result.V, Q, four)
         plot.panel(axes[letter], letter, f"${plot.degrees(**SETTINGS[letter])}$")
         _net(image, view, images[letter], Q, polygon, colours)
-        plot.panel(image, letter + "'", f"Möbius image of {letter}")
+        plot.panel(image, letter + "'", f"M\u00f6bius image of {letter}")
         claims |= patches.claims(letter, result, Q)
         claims[f"{letter}'_darts"] = darts([(images[letter], Q)])
     _history(axes["steps"], found)
