@@ -113,20 +113,24 @@ def save_text(text: str, path):
 def show(drawing: Drawing, colours: int | None = None):
     """Show a drawing below the cell of a notebook: as matplotlib does, or as a small PNG.
 
-    colours: of the PNG (IPython Image); the figure is then closed.  Nothing is written, unless
-    somebody says where: see `asked`.  To keep a drawing of your own, `save` it."""
+    colours: of the PNG (IPython Image).  The words of the drawing are stored beside the picture,
+    as its alternative text; what is shown is closed.  Nothing is written, unless somebody says
+    where: see `asked`.  To keep a drawing of your own, `save` it."""
     if folder := asked():
         save(drawing, folder)
-    if colours is None:
-        return None
-    from IPython.display import Image  # only a notebook needs it
+    from IPython.display import Image, display  # only a notebook needs it
 
+    if colours is None:
+        if "inline" in plt.get_backend():
+            display(drawing.figure, metadata={"image/png": {"alt": drawing.words}})
+            plt.close(drawing.figure)
+        return None
     fine, small = io.BytesIO(), io.BytesIO()
     drawing.figure.savefig(fine, format="png", dpi="figure")
     plt.close(drawing.figure)
     picture = PIL.Image.open(fine).convert("RGB")
     picture.quantize(colours, dither=PIL.Image.Dither.NONE).save(small, format="png", optimize=True)
-    return Image(data=small.getvalue(), format="png")
+    return Image(data=small.getvalue(), format="png", alt=drawing.words)
 
 
 def asked() -> Path | None:

@@ -11,7 +11,6 @@ import re
 import shutil
 import subprocess
 import sys
-from itertools import pairwise
 from pathlib import Path
 
 import matplotlib.image
@@ -24,7 +23,6 @@ from inetlib.drawings import same
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
-LESSONS = [path for path in NOTEBOOKS if path.stem >= "5"]
 MANIFEST = publish.read_manifest(ROOT / "figures")
 NOT_PRIVATE = "_replace", "_asdict", "_fields", "_make"  # of a named tuple
 
@@ -102,33 +100,61 @@ def test_stored_notebooks_have_a_guide_exercises_outputs_and_pictures(path):
         assert min(picture.shape[:2]) > 100 and picture[..., :3].std() > 0.02
 
 
-@pytest.mark.parametrize("path", LESSONS, ids=lambda path: path.stem)
-def test_lessons_have_links_captions_folded_proofs_and_errata_in_boxes(path):
-    cells = nbformat.read(path, as_version=4).cells
-    k = NOTEBOOKS.index(path)
-    beside = [p.name for p in NOTEBOOKS[k - 1 : k + 2] if p != path]
-    links = re.findall(r"\]\(([^)]+)\)", cells[0].source.splitlines()[2])
-    assert links == [*beside, "../PAPER.md", "../ERRATA.md"]
-    text = (ROOT / "ERRATA.md").read_text(encoding="utf-8")
-    for cell, after in pairwise(cells):
-        outputs_of = cell.outputs if cell.cell_type == "code" else []
-        if any("image/png" in output.get("data", {}) for output in outputs_of):
-            caption = after.source
-            assert after.cell_type == "markdown" and re.fullmatch(r"\*[^*\n]+\.\*", caption), (
-                caption
-            )
-        if cell.source.startswith("#### Proof\n\n"):
-            assert len(cell.source.splitlines()) == 3 and after.metadata.jupyter.source_hidden
-    for cell in cells:
-        if cell.cell_type == "code":
-            private = set(re.findall(r"(?:\.|import )(_[a-z]\w*)", cell.source))
-            assert private <= set(NOT_PRIVATE), private
-        for line in cell.source.splitlines() if cell.cell_type == "markdown" else ():
-            boxed = re.match(
-                r"> \*\*Erratum (E\d+)\.\*\* .* See \[ERRATA\]\(\.\./ERRATA\.md\)\.$", line
-            )
-            assert boxed or not re.search(r"\bE\d+\b", line), line
-            assert boxed is None or f"## {boxed[1]} " in text
+def headings_of(path):
+    """What stands behind # in a link to a heading: its words with a dash for each space."""
+    lines = [x for c in cells_of(path, "markdown") for x in c.source.splitlines()]
+    heads = [re.sub(r"^#+ ", "", x).replace("`", "") for x in lines if re.match("#+ ", x)]
+    return {head.replace(" ", "-") for head in heads}
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_link_leads_to_a_file_and_a_heading(path):
+    text = "\n".join(c.source for c in cells_of(path, "markdown"))
+    for target in re.findall(r"\]\(((?:[^()\s]|\([^()\s]*\))+)\)", text):
+        name, _, heading = target.partition("#")
+        if "://" not in name:
+            there = path.parent / name if name else path
+            assert there.is_file(), target
+            assert not heading or heading in headings_of(there), target
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_lesson_begins_with_links_to_its_neighbours(path):
+    links = re.findall(r"\]\((.*?)\)", cells_of(path, "markdown")[0].source.split("\n\n")[1])
+    here = NOTEBOOKS.index(path)
+    around = [p.name for p in NOTEBOOKS[max(here - 1, 0) : here + 2] if p != path]
+    assert links == [*around, "../PAPER.md", "../ERRATA.md"]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_a_picture_has_a_caption_and_a_folded_cell_says_what_it_proves(path):
+    cells, section = nbformat.read(path, as_version=4).cells, ""
+    for cell, after in zip(cells, [*cells[1:], None], strict=True):
+        if cell.cell_type == "markdown":
+            section = cell.source if re.search("^#", cell.source, re.MULTILINE) else section
+            before = cell.source
+            continue
+        if any("image/png" in o.get("data", {}) for o in cell.outputs):
+            assert re.match(r"\*\w[^*]+[.]\*(\n|$)", after.source), cell.source
+        folded = "hide-input" in outputs.tags(cell)
+        assert folded == cell.metadata.get("jupyter", {}).get("source_hidden", False)
+        if folded:
+            heading = re.findall("^#+ (.*)", section, re.MULTILINE)[-1]
+            assert "proof" in heading.lower() or "> **Erratum" in before, cell.source
+            assert before, cell.source
+            before = ""  # a sentence for each
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_lessons_use_public_names_and_put_errata_into_boxes(path):
+    code = "\n".join(cell.source for cell in cells_of(path))
+    assert set(re.findall(r"(?:\.|import )(_[a-z]\w*)", code)) <= set(NOT_PRIVATE)
+    known = re.findall(r"^## (E\d+) ", (ROOT / "ERRATA.md").read_text("utf-8"), re.MULTILINE)
+    for cell in cells_of(path, "markdown"):
+        for paragraph in re.split(r"\n>?\n", cell.source):
+            for number in re.findall(r"\bE\d+\b", paragraph):
+                assert number in known and paragraph.startswith(f"> **Erratum {number}.** ")
+                assert "See [ERRATA](../ERRATA.md)" in paragraph and "\n" not in paragraph
 
 
 def test_the_folder_of_figures_holds_what_the_manifest_names():

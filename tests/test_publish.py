@@ -253,6 +253,28 @@ def test_showing_writes_nothing_unless_somebody_says_where(draw, tmp_path, monke
     assert set(contents(tmp_path / "figures")) == FILES | {"table1.md", "table1.csv"}
 
 
+def test_a_shown_drawing_has_the_first_words_of_its_docstring_as_alternative_text(monkeypatch):
+    @drawings.drawn()
+    def draw():
+        """A net of nine faces,
+        drawn twice.
+
+        No more words."""
+        return plot.canvas([["A"]], 2, 2)[0], {}, [], {}
+
+    shown, drawing = [], draw()
+    assert drawing.words == "A net of nine faces, drawn twice."
+    monkeypatch.setattr("IPython.display.display", lambda *args, **named: shown.append(named))
+    monkeypatch.delenv(publish.FOLDER, raising=False)
+    publish.show(drawing)
+    assert shown == [] and plt.fignum_exists(drawing.figure.number)  # of a window, not our affair
+    monkeypatch.setattr(plt, "get_backend", lambda: "inline")
+    publish.show(drawing)
+    assert shown == [{"metadata": {"image/png": {"alt": drawing.words}}}]
+    assert not plt.fignum_exists(drawing.figure.number)
+    assert publish.show(draw(), 96).alt == drawing.words
+
+
 def test_the_kernels_of_redraw_write_into_figures_and_others_nowhere(monkeypatch):
     monkeypatch.setenv(publish.FOLDER, "somewhere")
     assert publish.FOLDER not in outputs.environment("own")

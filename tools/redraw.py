@@ -156,6 +156,9 @@ def tidy():
 def keep(cell, stored):
     """Keep what is stored below the cell where the fresh outputs show the same."""
     if outputs.kept(stored, cell):
+        for old, new in zip(stored.outputs, cell.outputs, strict=False):
+            if old.get("data", {}).keys() == new.get("data", {}).keys() != set():
+                old.metadata = new.metadata  # alternative texts
         cell.outputs = stored.outputs
         return
     if "view" in outputs.tags(cell):  # without OpenGL's warnings

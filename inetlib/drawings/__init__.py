@@ -21,6 +21,7 @@ class Drawing(NamedTuple):
     data: dict  # {name: array}, the geometry drawn
     nets: list  # (V, Q, theta, theta0) of each net shown, its angles in radians
     claims: dict  # {name: number or text}, what the figure states
+    words: str = ""  # what it shows, for readers who do not see it
 
 
 def deviations(nets) -> np.ndarray:
@@ -42,8 +43,8 @@ def rounded(value):
 
 def drawn(*degrees):
     """A decorator for `draw` of a module: what it returns, (figure, data, nets, claims), as a
-    `Drawing` of the module's name, with those arguments of the call that are numbers, and
-    with one claim more, the darts in its nets.
+    `Drawing` of the module's name, with those arguments of the call that are numbers, the first
+    paragraph of its docstring as its words, and one claim more, the darts in its nets.
 
     degrees: names of angles that are radians in the call, and noted in degrees."""
 
@@ -59,7 +60,8 @@ def drawn(*degrees):
             noted = {name: x for name, x in noted.items() if x is not None}
             name, function = module.rpartition(".")[2], f"{module}.{draw.__name__}"
             claims = rounded(claims | ({"darts": darts(nets)} if nets else {}))
-            return Drawing(name, figure, function, noted, data, nets, claims)
+            words = " ".join((inspect.getdoc(draw) or "").partition("\n\n")[0].split())
+            return Drawing(name, figure, function, noted, data, nets, claims, words)
 
         return whole
 
