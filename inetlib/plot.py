@@ -172,13 +172,13 @@ def scene(ax, view, layers, lines=(), pixels=1000, lift=0.003):
     seen = raster.render(view, layers, pixels, lift)
     ax.imshow(seen.image, extent=seen.extent, interpolation="hanning", zorder=1)
     ax.update_datalim(np.reshape(seen.extent, (2, 2)).T)
-    styles = {}
+    styles: dict = {}
     for points, colour, width in lines:
-        runs = raster.in_front(seen, view, points, len(layers))
-        styles.setdefault((width, colour), []).extend(view(run)[0] for run in runs)
-    for (width, colour), runs in styles.items():
+        styles.setdefault((width, colour), []).append(points)
+    for (width, colour), curved in styles.items():
+        runs = raster.in_front(seen, view, curved, len(layers))
         look = {"facecolor": "none", "edgecolor": colour, "linewidth": width, "capstyle": "round"}
         if runs:  # as one path, for a small file
-            path = Path.make_compound_path(*map(Path, runs))
+            path = Path.make_compound_path(*(Path(view(run)[0]) for run in runs))
             ax.add_patch(PathPatch(path, zorder=2 + width / 100, joinstyle="round", **look))
     return seen

@@ -4,13 +4,15 @@ import importlib
 import re
 from functools import cache
 from pathlib import Path
+from unittest.mock import patch
 
+import igl
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from test_gliding import DEFECTS, back_on_surface
 
-from inetlib import drawings, measure, mesh, motif, publish, solver, surfaces
+from inetlib import drawings, measure, mesh, motif, publish, raster, solver, surfaces
 from inetlib.drawings import (
     beyond_freedom,
     beyond_labels,
@@ -29,9 +31,23 @@ FIGURES = Path(__file__).resolve().parent.parent / "figures"
 STORED = publish.read_manifest(FIGURES)
 
 
+SCENES: dict = {}  # of the figures drawn: [(view, layers, `raster.Picture`, lines on it)]
+
+
 @cache
 def drawn(name):
-    drawing = importlib.import_module(f"inetlib.drawings.{name}").draw()
+    made, render, in_front = SCENES.setdefault(name, []), raster.render, raster.in_front
+
+    def watched(view, layers, *options):
+        made.append((view, layers, render(view, layers, *options), []))
+        return made[-1][2]
+
+    def listed(scene, view, lines, *options):
+        made[-1][3].extend(map(np.asarray, lines))
+        return in_front(scene, view, lines, *options)
+
+    with patch.multiple(raster, render=watched, in_front=listed):
+        drawing = importlib.import_module(f"inetlib.drawings.{name}").draw()
     plt.close(drawing.figure)
     return drawing
 
@@ -264,3 +280,32 @@ def test_table_1_is_the_stored_one(tmp_path):
         )
         assert same.text("\n".join(stored), "\n".join(made)), name
     assert len(made) == 1 + 2 * 7 and all(len(line.split(",")) >= 13 for line in made)
+
+
+@pytest.mark.parametrize("name", ["fig07", "fig09", "fig10"])
+def test_no_hidden_part_of_a_curve_is_drawn_in_front(name):
+    rng, found = np.random.default_rng(1), []
+    drawn(name)
+    every = SCENES[name]
+    for view, layers, scene, lines in every:
+        points, count = [], -(-500 // len(every))
+        for line in (lines[k] for k in rng.integers(len(lines), size=count)):
+            k, part = rng.integers(len(line) - 1), rng.random()
+            points.append(line[k] + part * (line[k + 1] - line[k]))
+        points = np.array(points)
+        ends = np.cumsum([0, *(len(V) for V, _, _ in layers)])
+        V = np.concatenate([V for V, _, _ in layers]).astype(float)
+        faces = [F + start for (_, F, _), start in zip(layers, ends, strict=False)]
+        T = np.concatenate([F[:, [0, i, i + 1]] for F in faces for i in range(1, F.shape[1] - 1)])
+        tree = igl.AABB()
+        tree.init(V, T)
+        way = np.tile(view(np.eye(3))[1], (len(points), 1))
+        step = len(layers) * scene.lift / scene.scale  # so much nearer a curve counts
+        hits = [
+            tree.intersect_ray_first(V, T, points + k * step * way, way)[0] >= 0 for k in (1, 2)
+        ]
+        seen = raster.visible(scene, view, points, len(layers))
+        found.append((np.sum(seen & hits[1]), np.sum(~seen & ~hits[0]), np.sum(hits[1]), len(seen)))
+    shown, missed, hidden, count = np.sum(found, axis=0)
+    assert count >= 500 and hidden > 50
+    assert shown <= 2 and missed <= 0.02 * count  # at outlines, where a pixel decides

@@ -61,7 +61,7 @@ def _panel(ax, view, V):
     scene = plot.scene(ax, view, layers, lines, lift=0.001)
     for name, (start, end) in {"d2": V[[1, 3]], "d1": V[[0, 2]]}.items():
         way = (1 - cut) * start + cut * end
-        seen = raster.in_front(scene, view, way, 3)
+        seen = raster.in_front(scene, view, [way], 3)
         plot.curves(ax, [view(run)[0] for run in seen], COLOURS[name], 1.6, zorder=4)
         plot.curves(ax, [view(way)[0]], COLOURS[name], 0.9, (0, (2, 2)), zorder=3)
         plot.vector(ax, *view(np.stack([start + 0.9 * (end - start), end]))[0], COLOURS[name])

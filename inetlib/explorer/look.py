@@ -124,6 +124,6 @@ def picture(V, Q, choice, shade, camera, form) -> bytes:
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
-        plot.scene(ax, camera, [(W, faces, fill)], lines, pixels=1600)
+        plot.scene(ax, camera, [(W, faces, fill)], lines, pixels=1200)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()
