@@ -45,7 +45,7 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
     first = np.maximum(-((SUB // 2 - corners.min(axis=1)) // SUB), 0)  # columns, rows of centres
     last = np.minimum((corners.max(axis=1) - SUB // 2) // SUB, [w - 1, h - 1])
     size = np.maximum(last - first + 1, 0)
-    sides = _sides(corners)
+    sides = _sides(corners.astype(float))  # whole numbers below 2^53 are exact, and fast
     area = sides[2].sum(axis=1)
     sides *= np.sign(area)[:, None]  # all turn alike, and what has no area is not seen
     sides[2][area == 0] = -1
@@ -84,16 +84,14 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
 
 def _sides(corners):
     """Coefficients (3, t, 3) of `_parts`, in x, in y, and constant, for the three sides."""
-    (x, y), (u, v) = (
-        np.moveaxis(corners[:, [1, 2, 0]], 2, 0),
-        np.moveaxis(corners[:, [2, 0, 1]], 2, 0),
-    )
+    x, y = np.moveaxis(corners[:, [1, 2, 0]], 2, 0)
+    u, v = np.moveaxis(corners[:, [2, 0, 1]], 2, 0)
     return np.stack([y - v, u - x, x * v - y * u])
 
 
 def _parts(sides, k, column, row):
     """Twice the areas (., 3), with sign, that a pixel's centre makes with the sides of k."""
-    x, y = (n * SUB + SUB // 2 for n in (column, row))
+    x, y = (n * float(SUB) + SUB // 2 for n in (column, row))
     return sides[0][k] * x[:, None] + sides[1][k] * y[:, None] + sides[2][k]
 
 

@@ -31,6 +31,12 @@ FOUR = tuple(product((("u", "v"), FAMILIES), (False, True)))  # families, parall
 each_layout = pytest.mark.parametrize(("families", "parallelograms"), FOUR)
 
 
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch):
+    """Saved pictures are coarse here, and quick."""
+    monkeypatch.setattr(look, "PIXELS", 200)
+
+
 def numbers(low, high, step, unit, open, whole):
     """A strategy: all allowed values of a number."""
     if whole:

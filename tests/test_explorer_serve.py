@@ -33,6 +33,12 @@ LIMIT = 60  # seconds after which a test gives up: nothing here takes so long
 SIDE = {"position": [3.0, -4.0, 5.0], "focalPoint": [0.0, 0.0, 0.0]}
 
 
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch):
+    """Saved pictures are coarse here, and quick."""
+    monkeypatch.setattr(look, "PIXELS", 200)
+
+
 @pytest.fixture(scope="module")
 def serve():
     """The module `inetlib.explorer.serve`, where its packages are installed."""

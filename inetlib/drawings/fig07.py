@@ -100,7 +100,7 @@ def _sheet(ax, view, bend, z):
     lines.append((bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z))), plot.INK, 2.2))
     surface = bend(fine[:, 0] + 1j * fine[:, 1]), F, plot.PALE
     apart = np.arange(len(quads)).reshape(-1, 4)
-    plot.scene(ax, view, [surface, (quads, apart, plot.DARK)], lines)
+    plot.scene(ax, view, [surface, (quads, apart, plot.DARK)], lines, pixels=700)
 
 
 def _finer(z, parts=6):

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from .. import plot
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
+PIXELS = 1200  # of the longer side of a net in a saved picture
 
 
 class Palette(NamedTuple):
@@ -124,6 +125,6 @@ def picture(V, Q, choice, shade, camera, form) -> bytes:
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
-        plot.scene(ax, camera, [(W, faces, fill)], lines, pixels=1200)
+        plot.scene(ax, camera, [(W, faces, fill)], lines, PIXELS)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()
