@@ -40,7 +40,7 @@ def drawn(name):
     made, render, in_front = SCENES.setdefault(name, []), raster.render, raster.in_front
 
     def watched(view, layers, pixels, lift):
-        pixels = pixels if name in CAST else 150  # quick
+        pixels = min(pixels, 400 if name in CAST else 150)  # quick
         made.append((view, layers, render(view, layers, pixels, lift), []))
         return made[-1][2]
 

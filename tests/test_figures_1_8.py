@@ -1,6 +1,7 @@
 """What Figs. 1 to 6 and 8 draw, panel by panel: shapes, nets, and the lines of plane panels."""
 
-from functools import cache
+from functools import cache, partial
+from unittest.mock import patch
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from matplotlib.collections import LineCollection, PathCollection, PolyCollection
 from matplotlib.text import Annotation
 
-from inetlib import parallelogram
+from inetlib import parallelogram, raster
 from inetlib.drawings import fig01, fig02, fig03, fig04, fig05, fig06, fig08
 
 DEG = np.pi / 180
@@ -18,7 +19,9 @@ GOLDEN = (1 + 5**0.5) / 2
 @cache
 def drawn(module, *args, **named):
     """A drawing of the module, and its axes by the names of the panels, in order."""
-    drawing = module.draw(*args, **named)
+    coarse = partial(raster.render, pixels=150)  # quick
+    with patch.object(raster, "render", lambda view, layers, *_: coarse(view, layers)):
+        drawing = module.draw(*args, **named)
     plt.close(drawing.figure)
     return drawing, drawing.figure.axes
 

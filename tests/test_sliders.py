@@ -7,9 +7,10 @@ import numpy as np
 import PIL.Image
 import pytest
 
-from inetlib import parallelogram, sliders
+from inetlib import parallelogram, raster, sliders
 from inetlib.drawings import ideas
 
+render = raster.render
 RANGES = {
     ideas.star: {"theta": (20, 160, 70), "theta0": (20, 160, 55)},
     ideas.half_plane: {"theta": (20, 160, 60), "theta0": (20, 160, 50)},
@@ -17,6 +18,12 @@ RANGES = {
     ideas.refinement: {"m": (6, 64, 16)},
     ideas.bending: {"curvature": (0.0, 1.0, 0.5)},
 }
+
+
+@pytest.fixture(autouse=True)
+def coarse(monkeypatch):
+    """Surfaces are painted coarsely here, and quickly."""
+    monkeypatch.setattr(raster, "render", lambda *args: render(*args[:2], 150, *args[3:]))
 
 
 def pixels(png):
