@@ -33,10 +33,10 @@ figures: $(READY)
 	$(BIN)/python tools/redraw.py
 
 test: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not notebook and not browser and not elsewhere"
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not notebook and not browser and not elsewhere"
 
 test-long: $(READY)
 	$(BIN)/python -m pytest -m "long or elsewhere" --long -n auto --dist load
@@ -47,7 +47,7 @@ test-browser: $(READY)
 
 test-oldest test-newest: test-%:
 	$(PYTHON) tools/setup.py --versions $*
-	.venv-$*/$(SCRIPTS)/python -m pytest -n auto --dist loadfile
+	.venv-$*/$(SCRIPTS)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 notebooks: $(READY)
 	$(BIN)/python -m jupyter lab --ServerApp.ip=127.0.0.1 notebooks/0_start_here.ipynb

@@ -29,6 +29,8 @@ def pytest_pyfunc_call(pyfuncitem):
 
 
 def pytest_collection_modifyitems(config, items):
+    # First the files that take longest, so that no core waits for another one at the end.
+    items.sort(key=lambda item: item.path.stem not in ("test_elsewhere", "test_notebooks"))
     if not config.getoption("--long"):
         long = [item for item in items if item.get_closest_marker("long")]
         config.hook.pytest_deselected(items=long)
