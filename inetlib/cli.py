@@ -200,7 +200,7 @@ def _cover_options(command):
 def _cover(given):
     from . import examples, io
 
-    io.check_output(given.output, given.curves, given.force)
+    io.check_output(given.output, given.curves, given.force, *_style(given))
     if given.surface in examples.SURFACES:
         (V, F), repaired = examples.SURFACES[given.surface](), []
     else:
@@ -237,7 +237,7 @@ def _web_options(command):
 def _web(given):
     from . import io, loxodrome
 
-    io.check_output(given.output, given.curves, given.force)
+    io.check_output(given.output, given.curves, given.force, *_style(given))
     profile = _profile(given.profile)
     net = loxodrome.web(profile, given.theta, given.theta0, given.m, given.n, given.method)
     about = _report(given, net.V, net.Q)
@@ -289,7 +289,7 @@ def _optimize_options(command):
 def _optimize(given):
     from . import io, mesh
 
-    io.check_output(given.output, given.curves, given.force)
+    io.check_output(given.output, given.curves, given.force, *_style(given))
     V, Q, polygons, notes = _read_net(given)
     ways = {name: getattr(given, name) for name in ("on_surface", "fixed", "via", "tolerance")}
     if given.reference is not None:
@@ -412,6 +412,11 @@ def _report(given, V, Q, polygons=()):
     return report.report(V, Q, polygons, **wanted)
 
 
+def _style(given):
+    """How the file is written: unit, faces, up."""
+    return given.unit, given.dxf == "3dface", given.up
+
+
 def _finish(given, V, Q, polygons, about, notes, more):
     """Write the net if it is good or to be kept, and say what there is to say: exit code."""
     from . import io
@@ -421,8 +426,7 @@ def _finish(given, V, Q, polygons, about, notes, more):
     if written:
         suffix = Path(given.output).suffix.lower()
         curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
-        style = given.unit, given.dxf == "3dface", given.up
-        io.write(given.output, V, Q, curves, polygons, given.force, *style)
+        io.write(given.output, V, Q, curves, polygons, given.force, *_style(given))
     _say(given, about, given.output if written else None, notes, **more)
     if good:
         return DONE

@@ -292,3 +292,10 @@ def test_the_bar_names_every_stage_of_a_cover(capfd):
     shown = capfd.readouterr().err
     for stage in ("check", "flatten", "grid", "angle step", "report"):
         assert stage in shown
+
+
+def test_what_a_format_has_no_place_for_is_said_before_the_work(inet):  # noqa: F811
+    words = "cover", "roof", "--theta", "60", "--theta0", "60", "--quads", "1000000000"  # no end
+    for more in (("x.obj", "--unit", "mm"), ("x.3dm", "--dxf", "3dface"), ("x.glb", "--up", "y")):
+        code, out, err = inet(*words, "-o", *more)
+        assert (code, out) == (2, "") and err.startswith(f"inet: {more[0]}: ")

@@ -173,7 +173,14 @@ def missing(suffix: str) -> str:
     return package if package and importlib.util.find_spec(package) is None else ""
 
 
-def check_output(path: str | Path, curves: bool = False, force: bool = False) -> Format:
+def check_output(
+    path: str | Path,
+    curves: bool = False,
+    force: bool = False,
+    unit: str | None = None,
+    faces: bool = False,
+    up: str = "z",
+) -> Format:
     """The format of a file that `write` can write; else its errors, before the work begins.
 
     >>> check_output("net.step")  # doctest: +ELLIPSIS
@@ -191,6 +198,13 @@ def check_output(path: str | Path, curves: bool = False, force: bool = False) ->
         raise FileExistsError(f"{path} exists already: --force (force=True) replaces it")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise PermissionError(f"{path}: no permission to write there")
+    suffix = path.suffix.lower()
+    if unit not in exchange.UNITS or up not in ("z", "y"):
+        raise ValueError(f'unit = {unit!r}, up = {up!r}: mm, cm, m, in or ft, and "z" or "y"')
+    if (unit and suffix not in (".dxf", ".3dm")) or (faces and suffix != ".dxf"):
+        raise ValueError(f"{path}: only .dxf and .3dm have units, only .dxf has faces")
+    if up == "y" and suffix == ".glb":
+        raise ValueError(f"{path}: y is upwards in GLB files anyway, leave `up` as it is")
     return known
 
 
@@ -229,13 +243,8 @@ def write(
     given = curves._asdict() if curves else {}
     families = {k: [_row(c, len(V), 2, "curve") for c in x] for k, x in given.items() if x}
     polygons = [_row(polygon, len(V), 3, "polygon") for polygon in polygons]
-    known, suffix = check_output(path, bool(families), force), Path(path).suffix.lower()
-    if unit not in exchange.UNITS or up not in ("z", "y"):
-        raise ValueError(f'unit = {unit!r}, up = {up!r}: mm, cm, m, in or ft, and "z" or "y"')
-    if (unit and suffix not in (".dxf", ".3dm")) or (faces and suffix != ".dxf"):
-        raise ValueError(f"{path}: only .dxf and .3dm have units, only .dxf has faces")
-    if up == "y" and suffix == ".glb":
-        raise ValueError(f"{path}: y is upwards in GLB files anyway, leave `up` as it is")
+    known = check_output(path, bool(families), force, unit, faces, up)
+    suffix = Path(path).suffix.lower()
     if suffix in SINGLE and np.abs(V).max() > 1e38:
         raise ValueError(f"{path}: no place for coordinates beyond 1e38, write .obj or .ply")
     V = V @ glb.Y_UP.T if up == "y" else V
