@@ -118,7 +118,7 @@ def test_setup_installs_the_versions_it_was_asked_for(versions, tmp_path, monkey
     monkeypatch.setattr(sys, "argv", ["setup.py", "--versions", versions])
     assert setup.main() == 0
     assert commands[0] == [sys.executable, "-m", "venv", str(folder)]
-    project = ["-e", ".[view,cad,test]"]
+    project = ["-e", ".[view,cad,book,test]"]
     wanted = {"pinned": ["-c", "constraints.txt"], "oldest": pins, "newest": []}[versions]
     quiet = ["--quiet", "--disable-pip-version-check"]
     assert commands[1][1:] == ["-m", "pip", "install", *quiet, *wanted, *project]

@@ -69,7 +69,7 @@ def main():
     print(f"installing the {versions} packages into {venv.name} ...", flush=True)
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     chosen = {"pinned": ["-c", "constraints.txt"], "oldest": oldest(), "newest": []}[versions]
-    if run([*pip, *chosen, "-e", ".[view,cad,test]"]):
+    if run([*pip, *chosen, "-e", ".[view,cad,book,test]"]):
         return "the packages could not be installed: see pip's message above"
     # pip leaves our own modules out, and all where PIP_NO_COMPILE is set; Python does not make up
     # for it where PYTHONDONTWRITEBYTECODE is set, and compiles them at every start instead
