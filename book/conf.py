@@ -38,5 +38,17 @@ myst_enable_extensions = ["amsmath", "dollarmath", "attrs_inline", "attrs_block"
 myst_heading_anchors = 4
 myst_heading_slug_func = "wording.slug"
 
+nitpicky = True  # what is linked must be there
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
+
+
+def setup(app):
+    """Docstrings are the library's own plain words, not reStructuredText."""
+    import pages
+    import wording
+
+    def words(app, what, name, obj, options, lines):
+        lines[:] = wording.restructured(lines, lambda item: pages.address(item, 1, "html"))
+
+    app.connect("autodoc-process-docstring", words)
