@@ -22,8 +22,8 @@ html_theme_options = {
     "show_toc_level": 2,
     "home_page_in_toc": True,
     "show_navbar_depth": 1,
-    "article_header_end": ["toggle-primary-sidebar.html"],
 }
+smartquotes = False
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
@@ -34,12 +34,20 @@ mathjax3_config = {"options": {"enableMenu": False}}  # its menu would ask other
 nb_execution_mode = "off"  # the notebooks are shown as they are stored
 nb_merge_streams = True
 nb_code_prompt_show = "{type}"
-myst_enable_extensions = ["amsmath", "dollarmath", "attrs_inline", "attrs_block"]
+myst_enable_extensions = [
+    "amsmath",
+    "dollarmath",
+    "attrs_inline",
+    "attrs_block",
+    "colon_fence",
+    "html_image",
+]
 myst_heading_anchors = 4
 myst_heading_slug_func = "wording.slug"
 
 nitpicky = True  # what is linked must be there
 autodoc_member_order = "bysource"
+autodoc_inherit_docstrings = False
 autodoc_typehints = "none"
 
 

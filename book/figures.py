@@ -18,7 +18,13 @@ def write(folder: Path):
     """The gallery of figures and a page for each."""
     folder.mkdir()
     manifest = publish.read_manifest(ROOT / "figures")
-    index = ["# Figures", "", "All figures, as they are drawn here; each page has the picture as", "SVG and PNG, the Python that draws it, its numbers and its nets.", ""]
+    index = [
+        "# Figures",
+        "",
+        "All figures, as they are drawn here; each page has the picture as",
+        "SVG and PNG, the Python that draws it, its numbers and its nets.",
+        "",
+    ]
     for name, entry in manifest.items():
         for suffix in ("svg", "png"):
             shutil.copyfile(ROOT / "figures" / f"{name}.{suffix}", folder / f"{name}.{suffix}")
@@ -40,7 +46,11 @@ def _nets(module, folder):
     drawing = module.draw()
     plt.close(drawing.figure)
     faces = {len(V): Q for V, Q, *_ in drawing.nets}
-    named = {key: V for key, V in drawing.data.items() if np.shape(V)[1:] in ((2,), (3,)) or np.iscomplexobj(V)}
+    named = {
+        key: V
+        for key, V in drawing.data.items()
+        if np.shape(V)[1:] in ((2,), (3,)) or np.iscomplexobj(V)
+    }
     nets = {key: (_spatial(V), faces.get(len(V))) for key, V in named.items()}
     nets = {key: (V, Q) for key, (V, Q) in nets.items() if Q is not None}
     if not nets:
@@ -64,20 +74,32 @@ def _page(path, heading, name, entry, module, nets):
     """The page of one figure."""
     lines = [f"# {heading}", "", "{.figure}", f"![{heading}]({name}.svg)", ""]
     lines += [f"[SVG](<{name}.svg>) \u00b7 [PNG](<{name}.png>)", ""]
-    lines = [x.replace("[SVG](<", "{download}`SVG <").replace(">)", ">`").replace("[PNG](<", "{download}`PNG <") for x in lines]
+    lines = [
+        x.replace("[SVG](<", "{download}`SVG <")
+        .replace(">)", ">`")
+        .replace("[PNG](<", "{download}`PNG <")
+        for x in lines
+    ]
     lines += [pages.scene(x) + "\n" for x in pages.SCENES.get(name, [])]
     item = f"Fig. {int(name[3:])}" if name.startswith("fig") else None
     if item:
-        lines += [f"What it shows, where it is explained and tested: [{item}]({pages.address(item, 1)}).", ""]
+        lines += [
+            f"What it shows, where it is explained and tested: [{item}]({pages.address(item, 1)}).",
+            "",
+        ]
     lines += ["## Parameters and numbers", "", "| | |", "|---|---|"]
     lines += [f"| `{key}` | {_shown(value)} |" for key, value in entry["parameters"].items()]
     for key in ("max_deviation_theta_deg", "max_deviation_theta0_deg"):
         if entry[key] is not None:
             lines.append(f"| {key.replace('_', ' ')} | {entry[key]:.9f} |")
-    lines += [f"| {key.replace('_', ' ')} | {_shown(value)} |" for key, value in entry["claims"].items()]
+    lines += [
+        f"| {key.replace('_', ' ')} | {_shown(value)} |" for key, value in entry["claims"].items()
+    ]
     if nets:
         lines += ["", "## Nets", "", "With 7 decimals, as OBJ:", ""]
-        lines += [f"* {{download}}`{key} <nets/{file}>`, {count} quads" for key, file, count in nets]
+        lines += [
+            f"* {{download}}`{key} <nets/{file}>`, {count} quads" for key, file, count in nets
+        ]
     lines += ["", "## The Python that draws it", "", f"`{entry['function']}`, all of its file:", ""]
     lines += ["```python", inspect.getsource(module).rstrip(), "```"]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

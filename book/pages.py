@@ -109,11 +109,14 @@ def inside(text: str, depth: int = 0) -> str:
             return f"[{words}]({mark})"
         return words if words.startswith("`") else f"{words} (`{path}`)"
 
-    text = re.sub(r"(?<!!)\[([^\]]+)\]\((?!\w+:)([^)#\s]*)(#[^()\s]*(?:\([^()\s]*\)[^()\s]*)*)?\)", link, text)
+    text = re.sub(
+        r"(?<!!)\[([^\]]+)\]\((?!\w+:)([^)#\s]*)(#[^()\s]*(?:\([^()\s]*\)[^()\s]*)*)?\)", link, text
+    )
     return wording.linked(text, lambda item: address(item, depth))
 
 
 # -- notebooks
+
 
 def headings(notebook: str) -> list[str]:
     """The headings of a notebook, without their marks."""
@@ -175,7 +178,9 @@ def notebooks(folder: Path):
                 cell.source = _numbered(inside(cell.source, 1), path.stem)
                 continue
             alts = [o.get("metadata", {}).get("image/png", {}).get("alt") for o in cell.outputs]
-            cell.metadata["mystnb"] = {"image": {"alt": next(filter(None, alts), "see the caption")}}
+            cell.metadata["mystnb"] = {
+                "image": {"alt": next(filter(None, alts), "see the caption")}
+            }
             for tag in cell.metadata.get("tags", []):
                 cells += [nbformat.v4.new_markdown_cell(scene(x)) for x in SCENES.get(tag, [])]
         notebook.cells = cells
@@ -189,7 +194,9 @@ def _numbered(text, notebook):
         lines.append(re.sub(r"^#{4} (.*)", r"**\1**", line))  # a level below is no heading here
         if re.match(r"##+ ", line):
             here = [row for row in rows() if row.notebook == notebook]
-            here = [row for row in here if re.search(rf"(?<!\w){re.escape(row.heading)}(?!\w)", line)]
+            here = [
+                row for row in here if re.search(rf"(?<!\w){re.escape(row.heading)}(?!\w)", line)
+            ]
             if here:
                 names = dict.fromkeys(name for row in here for name in row.functions[:3])
                 links = [f"[{row.item}]({address(row.item, 1)})" for row in here]
@@ -205,6 +212,7 @@ def scene(name: str) -> str:
 
 # -- tests, API
 
+
 def tests(folder: Path):
     """The tests that PAPER.md and ERRATA.md name, one page a file."""
     folder.mkdir()
@@ -215,7 +223,11 @@ def tests(folder: Path):
     for file in files:
         text = (ROOT / "tests" / file).read_text(encoding="utf-8")
         lines = text.splitlines()
-        page = [f"# `tests/{file}`", "", "The tests that the table of the paper, or the errata, name."]
+        page = [
+            f"# `tests/{file}`",
+            "",
+            "The tests that the table of the paper, or the errata, name.",
+        ]
         for node in ast.parse(text).body:
             if isinstance(node, ast.FunctionDef) and f"{file}::{node.name}" in named:
                 first = min([node.lineno, *(x.lineno for x in node.decorator_list)])
@@ -225,7 +237,12 @@ def tests(folder: Path):
                 body = lines[first - 1 : node.end_lineno]
                 page += ["", f"## {node.name}", "", links, "", "```python", *body, "```"]
         (folder / f"{Path(file).stem}.md").write_text("\n".join(page) + "\n", encoding="utf-8")
-    _index(folder, "Tests", "What the tests named in this book consist of.", [Path(f).stem for f in files])
+    _index(
+        folder,
+        "Tests",
+        "What the tests named in this book consist of.",
+        [Path(f).stem for f in files],
+    )
 
 
 def _index(folder, heading, words, names):
@@ -238,12 +255,27 @@ def _index(folder, heading, words, names):
 def api(folder: Path):
     """One page a module: its functions with their sources, and where they are proved and tested."""
     folder.mkdir()
-    sources = {p.name: p.read_text(encoding="utf-8") for p in sorted((ROOT / "tests").glob("test_*.py"))}
+    sources = {
+        p.name: p.read_text(encoding="utf-8") for p in sorted((ROOT / "tests").glob("test_*.py"))
+    }
     for name in modules():
-        lines = [f"# {name}", "", "```{eval-rst}", f".. automodule:: inetlib.{name}", "   :members:", "```", ""]
+        lines = [
+            f"# {name}",
+            "",
+            "```{eval-rst}",
+            f".. automodule:: inetlib.{name}",
+            "   :members:",
+            "```",
+            "",
+        ]
         here = [row for row in rows() if any(module_of(x) == name for x in row.functions)]
         if here:
-            lines += ["## In the paper", "", "| item | functions | notebook | tests |", "|---|---|---|---|"]
+            lines += [
+                "## In the paper",
+                "",
+                "| item | functions | notebook | tests |",
+                "|---|---|---|---|",
+            ]
         for row in here:
             names = [code(x) for x in row.functions if module_of(x) == name]
             told = [check(x, 1) for x in row.tests]
@@ -254,7 +286,11 @@ def api(folder: Path):
         books = [x for x in _names() if used.search(_code(x))]
         files = [file for file, text in sources.items() if used.search(text)]
         lines += ["", "## Where it is used", ""]
-        lines.append("Notebooks: " + (", ".join(f"[{x}](../notebooks/{x}.ipynb)" for x in books) or "none") + ".")
+        lines.append(
+            "Notebooks: "
+            + (", ".join(f"[{x}](../notebooks/{x}.ipynb)" for x in books) or "none")
+            + "."
+        )
         lines += ["", "Tests: " + (", ".join(f"`{x}`" for x in files) or "none") + "."]
         (folder / f"{name}.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     words = "The library, module after module; each function has its source."
@@ -272,6 +308,7 @@ def _code(notebook):
 
 # -- the paper and its claims
 
+
 def table(text: str) -> str:
     """PAPER.md with every function, test and heading a link."""
     lines = []
@@ -288,7 +325,13 @@ def table(text: str) -> str:
 
 GROUPS = {
     "Equations": ("Eq.",),
-    "Lemma, definitions, propositions, theorems, corollaries": ("Lemma", "Def.", "Prop.", "Thm", "Cor."),
+    "Lemma, definitions, propositions, theorems, corollaries": (
+        "Lemma",
+        "Def.",
+        "Prop.",
+        "Thm",
+        "Cor.",
+    ),
     "Figures": ("Fig.",),
     "Algorithm and table": ("Alg.", "Table"),
     "Appendix": ("App.",),
@@ -320,7 +363,10 @@ def status(row: Row) -> list[str]:
         within = f" within {tolerance}" if tolerance else ""
         said.append(f"checked numerically{within} over {cases[1]} random cases")
     if "nets" in row.proof:
-        said.append("checked on nets" + (f": {m[1]}" if (m := re.search(r"nets: ([^;]*)", row.proof)) else ""))
+        said.append(
+            "checked on nets"
+            + (f": {m[1]}" if (m := re.search(r"nets: ([^;]*)", row.proof)) else "")
+        )
     if "drawing" in row.proof:
         said.append("drawn, and the drawing checked")
     if "rerun" in row.proof:
@@ -337,8 +383,14 @@ def tolerances(tests: tuple) -> str:
         tree = ast.parse((ROOT / "tests" / file).read_text(encoding="utf-8"))
         node = next(x for x in tree.body if getattr(x, "name", "") == name)
         limits = [x for n in ast.walk(node) if isinstance(n, ast.Compare) for x in n.comparators]
-        limits += [n.value for n in ast.walk(node) if isinstance(n, ast.keyword) and n.arg in ("atol", "rtol", "abs", "rel")]
-        found += [x.value for x in limits if isinstance(x, ast.Constant) and isinstance(x.value, float)]
+        limits += [
+            n.value
+            for n in ast.walk(node)
+            if isinstance(n, ast.keyword) and n.arg in ("atol", "rtol", "abs", "rel")
+        ]
+        found += [
+            x.value for x in limits if isinstance(x, ast.Constant) and isinstance(x.value, float)
+        ]
     small = [x for x in found if 0 < x <= 1e-3]
     return f"{max(small):.0e}".replace("e-0", "e-") if small else ""
 
@@ -346,7 +398,11 @@ def tolerances(tests: tuple) -> str:
 def claimed() -> str:
     """The page of claims: all items with what is known of them, counted at the top."""
     page = ["# What the paper claims, and what we found", ""]
-    page += ["Every numbered item, where it is computed, shown and tested. This page is made of", "[the table of the paper](paper.md) and [the errata](errata.md).", ""]
+    page += [
+        "Every numbered item, where it is computed, shown and tested. This page is made of",
+        "[the table of the paper](paper.md) and [the errata](errata.md).",
+        "",
+    ]
     counts, body = [], []
     for group, kinds in GROUPS.items():
         here = [row for row in rows() if row.item.startswith(kinds)]
@@ -358,18 +414,29 @@ def claimed() -> str:
             "drawn": sum("drawing" in row.proof for row in here),
             **{what: sum(what in faults(row) for row in here) for what in SAID.values()},
         }
-        counts.append(f"| {group} | {len(numbers)} | " + " | ".join(map(str, shown.values())) + " |")
+        last = max(
+            (int(n) for n in re.findall(r"\d+", " ".join(numbers)) if kinds[0] != "App."), default=0
+        )
+        of = f" of {last}" if len(numbers) == last else ""
+        counts.append(
+            f"| {group} | {len(numbers)}{of} | " + " | ".join(map(str, shown.values())) + " |"
+        )
         body += ["", f"## {group}"]
         for row in here:
             said = status(row)
-            said += [f"{what} ({', '.join(f'[{n}]({address(n)})' for n in names)})" for what, names in faults(row).items()]
+            said += [
+                f"{what} ({', '.join(f'[{n}]({address(n)})' for n in names)})"
+                for what, names in faults(row).items()
+            ]
             body += ["", f"### {title(row)}", "", f"**Status:** {'; '.join(said)}.", ""]
             body.append("**Library:** " + ", ".join(code(x) for x in row.functions) + ".  ")
             body.append(f"**Notebook:** {place(row)}.  ")
             body.append("**Tests:** " + ", ".join(check(x) for x in row.tests) + ".")
             if match := re.match(r"Fig\. (\d+)", row.item):
                 body.append(f"  \n**Figure:** [as drawn here](figures/fig{int(match[1]):02}.md).")
-    page += ["| | items | proved by sympy | random cases | nets | drawn | misprint | needs a condition | two readings |"]
+    page += [
+        "| | items | proved by sympy | random cases | nets | drawn | misprint | needs a condition | two readings |"
+    ]
     page += ["|---|" + "---:|" * 8, *counts, "", "An item may stand in several columns."]
     return "\n".join([*page, *body]) + "\n"
 

@@ -71,7 +71,7 @@ def restructured(lines, target) -> list[str]:
     """A docstring of ours as reStructuredText, its items links; it has no other markup.
 
     lines: of the docstring.  `Names` in backticks become code; examples stay; a paragraph with
-    columns or indented lines keeps its lines."""
+    columns or indented lines is kept letter by letter."""
     found = []
     for paragraph in re.split(r"\n\s*\n", "\n".join(lines).strip("\n")):
         if paragraph.lstrip().startswith(">>>"):
@@ -82,7 +82,9 @@ def restructured(lines, target) -> list[str]:
             plain = re.sub(r"([\\*|_`])", r"\\\1", part)
             parts[k] = f"`{part}`" if k % 2 else linked(plain, target, "`{} <{}>`__")
         inner = "".join(parts).split("\n")
-        if re.search(r"\S {2,}(?<!\.  )\S|^ ", paragraph, re.MULTILINE) or "\n- " in f"\n{paragraph}":
+        if "\n- " in f"\n{paragraph}":
             inner = [f"| {line}" for line in inner]
+        elif re.search(r"\w {2,}(?<![.;:]  )\S|^ ", paragraph, re.MULTILINE):
+            inner = ["::", "", *(f"    {line}" for line in paragraph.split("\n"))]
         found += [*inner, ""]
     return found
