@@ -135,7 +135,7 @@
   const drawn = (shape) => {
     const all = corners(shape);
     const lines = sides(all);
-    const words = (sign, angle) => `${sign} ${angle.toFixed(0)}\u00b0`;
+    const words = (sign, angle) => `${sign} ${Number(angle.toFixed(1))}\u00b0`;
     const arcs = [
       arc(lines, all[0], all[1], all[3], 17, words("\u03b8", shape.theta), -1),
       arc(lines, [0, 0], all[2], all[3], 13, words("\u03b8\u2080", shape.theta0), 1),
@@ -156,16 +156,18 @@
   });
 
   const TEMPLATE = `
-    <div class="scene-view" tabindex="0" role="img" @keydown="press"
-        :aria-label="scene.words + ' Arrow keys turn it, + and - zoom.'">
-      <div class="scene-canvas" :class="{ ready }" ref="canvas">
-        <vtk-view ref="view" :key="theme" :background="colours.paper"
-            :interactor-settings="buttons" @reset-camera="aim()">
-          <vtk-geometry-representation v-for="layer in layers" :key="layer.name"
-              :property="layer.property" :actor="layer.actor" :mapper="layer.mapper">
-            <vtk-polydata :key="at" :points="shown.all" v-bind="layer.cells"/>
-          </vtk-geometry-representation>
-        </vtk-view>
+    <div class="scene-left">
+      <div class="scene-view" tabindex="0" role="img" @keydown="press"
+          :aria-label="scene.words + ' Arrow keys turn it, + and - zoom.'">
+        <div class="scene-canvas" :class="{ ready }" ref="canvas">
+          <vtk-view ref="view" :key="theme" :background="colours.paper"
+              :interactor-settings="buttons" @reset-camera="aim()">
+            <vtk-geometry-representation v-for="layer in layers" :key="layer.name"
+                :property="layer.property" :actor="layer.actor" :mapper="layer.mapper">
+              <vtk-polydata :key="at" :points="shown.all" v-bind="layer.cells"/>
+            </vtk-geometry-representation>
+          </vtk-view>
+        </div>
       </div>
       <div class="scene-tools">
         <button type="button" aria-label="nearer" @click="zoom(1.25)">+</button>
@@ -200,8 +202,8 @@
           <i :class="name" :style="{ background: 'var(--inet-' + name + ')' }"></i>{{ title }}
         </label>
       </div>
-      <p class="scene-note">{{ scene.note }}</p>
-    </div>`;
+    </div>
+    <p class="scene-note">{{ scene.note }}</p>`;
 
   const component = (scene, kept, element) => ({
     template: TEMPLATE,
@@ -365,6 +367,7 @@
   };
 
   const start = () => {
+    if (document.querySelector(".rho")) load("rho.js");
     const found = document.querySelectorAll(".scene");
     if (!found.length) return;
     if (!possible()) {
