@@ -194,7 +194,6 @@ def patch(m=20):
     return Scene(states, "\u03b8 = \u03b8\u2080, asked for", SOLVED, (-62, 42), len(states) - 1)
 
 
-@functools.cache
 def hexagon():
     """A net around a hexagon, theta = 60, theta0 from 60 to 45 degrees.  Paper: Fig. 13."""
     V, Q, polygon = fig13.start()
@@ -210,13 +209,19 @@ def hexagon():
 
 def inversion():
     """The images of the nets around a hexagon.  Paper: Fig. 13."""
-    turned, scene = moebius.inversion(fig13.CENTRE, fig13.RADIUS), hexagon()
+    turned, scene = moebius.inversion(fig13.CENTRE, fig13.RADIUS), made("hexagon")
     states = [s._replace(V=moebius.apply(turned, s.V)) for s in scene.states]
     return scene._replace(states=states, note=IMAGE, follow=True)
 
 
 MADE = {f.__name__: f for f in (web, bending, squares, associate, stereographic, vase, sphere)}
 MADE |= {f.__name__: f for f in (patch, hexagon, inversion)}
+
+
+@functools.cache
+def made(name):
+    """The `Scene` of a name, made once."""
+    return MADE[name]()
 
 
 def stored(V):
@@ -257,7 +262,7 @@ def _seen(V, view):
 def script(name):
     """The text of a scene's file, which calls inetScene(name, {...})."""
     title, words = SCENES[name]
-    scene = MADE[name]()
+    scene = made(name)
     whole = _seen(np.concatenate([state.V for state in scene.states]), scene.view)
     states = []
     for s in scene.states:
