@@ -14,7 +14,7 @@ exclude_patterns = []
 html_theme = "sphinx_book_theme"
 html_title = "Discrete isogonal nets"
 html_static_path = ["_build/source/_static"]
-html_css_files = ["book.css"]
+html_css_files = ["book.css", "scenes.css"]
 html_js_files = [("viewer.js", {"defer": "defer"})]
 html_theme_options = {
     "use_download_button": False,
