@@ -5,7 +5,11 @@ python tools/environment.py"""
 import tomllib
 from pathlib import Path
 
-PIP_ONLY = ("libigl", "rhino3dm", "django-static-mathjax")  # conda-forge has the first under another name, igl
+PIP_ONLY = (
+    "libigl",
+    "rhino3dm",
+    "django-static-mathjax",
+)  # conda-forge has the first under another name, igl
 ROOT = Path(__file__).resolve().parent.parent
 
 
