@@ -18,11 +18,26 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
+import PIL.Image
+from matplotlib.colors import to_rgb
 from scipy.special import ellipj
 
 from inetlib import (
-    conformal, design, developable, examples, files, loxodrome, measure, mesh, moebius, planar,
-    plot, reference, repair, solver, surfaces,
+    conformal,
+    design,
+    developable,
+    examples,
+    files,
+    loxodrome,
+    measure,
+    mesh,
+    moebius,
+    planar,
+    plot,
+    reference,
+    repair,
+    solver,
+    surfaces,
 )  # fmt: skip
 from inetlib.drawings import same
 from inetlib.start import finished, listen
@@ -30,10 +45,10 @@ from inetlib.start import finished, listen
 FOLDER = Path(__file__).resolve().parent.parent / "figures" / "gallery"
 SIZE, DPI, ROOM = 5.4, 200, 0.94  # inches of a square, dots per inch, its part that a net takes
 PIXELS = 1300  # of the longer side of a net, before it is put on paper
-MOST, TONES = 125_000, (255, 96, 48, 32, 24, 18)  # bytes of a picture; how many colours it may have
+MOST, SHADES, DARKEST = 130_000, (24, 16, 12, 9), 0.35  # bytes; of each colour; the least bright
 EXACT = 1e-6  # degrees: below is rounding
-BLUE, TEAL, VIOLET = plot.DARK, "#5f9ea3", "#8a87bd"
-EDGE = "#1d3557"
+BLUE, TEAL, VIOLET = "#7497cf", "#67aaa9", "#958fcb"  # of parallelograms
+LIGHT, EDGE = "#f6f7fa", "#1d3557"
 
 
 def vase():
@@ -53,14 +68,14 @@ def vase():
 
 
 def globe():
-    """Loxodromes wind around a sphere towards both poles, at half a right angle to the parallels."""
+    """Loxodromes wind around a sphere towards both poles, in an exact web with the parallels."""
     theta, theta0 = np.radians([70, 45])
-    net = loxodrome.web(surfaces.sphere_profile(1, -1.4, 1.4), theta, theta0, 40)
+    net = loxodrome.web(surfaces.sphere_profile(1, -1.52, 1.52), theta, theta0, 36)
     return net.V, net.Q, (theta, theta0)
 
 
 def cyclide():
-    """A closed web of a torus becomes a Dupin cyclide by an inversion, and the solver makes it exact."""
+    """A closed web of a torus, inverted to a Dupin cyclide, which the solver makes exact."""
     net = loxodrome.torus_web(2, 0.9, 57, 47, 20)
     V = moebius.apply(moebius.inversion((6, 0, 0), 4), net.V)
     found = solver.optimize(V, net.Q, net.theta, net.theta0, via="jump", shape_steps=0)
@@ -68,7 +83,7 @@ def cyclide():
 
 
 def galaxy():
-    """The hyperbolic cosine of a plane grid: spirals between ellipses, exact for cells of any size."""
+    """The hyperbolic cosine of a plane grid: spirals between two ellipses, exact at once."""
     theta, theta0 = np.radians([75, 50])
     z = conformal.sheared_grid(theta, theta0, 60, 21, 2.05, np.pi / 30, 1j, kappa=1)
     V, Q = conformal.quads(np.cosh(z))
@@ -76,7 +91,7 @@ def galaxy():
 
 
 def star():
-    """Rings of quads around an octagon, in the plane: one linear system, whose solution is exact."""
+    """Rings of quads around an octagon in the plane: one linear system makes them exact."""
     theta, theta0 = np.radians([70, 50])
     V, Q = mesh.polygon_rings(8, 12)[:2]
     net = planar.planar_net(Q, theta, theta0, start=V, smooth=0.3)
@@ -84,7 +99,7 @@ def star():
 
 
 def scroll():
-    """A sheet of paper with a grid, rolled along a logarithmic spiral; the solver makes it exact."""
+    """A sheet with a plane grid, rolled up along a spiral; the solver makes it exact."""
     theta, theta0 = np.radians([75, 60])
     rate = 0.16 + 1j  # of the spiral exp(rate t), whose derivatives are multiples of it
     curve = developable.arc_length(lambda t, k=0: plot.plane(rate**k * np.exp(rate * t)), 0, 9)
@@ -117,7 +132,7 @@ def coil():
 def minimal():
     """A minimal surface of Enneper's kind with three lobes, in polar coordinates, sampled."""
     theta, theta0 = np.radians([75, 60])
-    z = np.exp(conformal.sheared_grid(theta, theta0, 96, 26, 0.25, np.pi / 48, 1j))
+    z = np.exp(conformal.sheared_grid(theta, theta0, 96, 26, 0.15, np.pi / 48, 1j))
     V = np.stack([(z - z**5 / 5).real, (z + z**5 / 5).imag, (2 * z**3 / 3).real])
     return V.reshape(3, -1).T, mesh.grid_quads(96, 26), (theta, theta0)
 
@@ -161,14 +176,14 @@ NETS = {
     vase: Look("Vase", 40, 17, BLUE, 4),
     star: Look("Star", -90, 90, VIOLET),
     cyclide: Look("Dupin cyclide", 75, 52, TEAL),
-    minimal: Look("Three lobes", 60, 38, VIOLET),
-    globe: Look("Globe", 20, 38, BLUE, 5),
+    minimal: Look("Three lobes", 90, -20, VIOLET),
+    globe: Look("Globe", 20, 38, BLUE, 4),
     scroll: Look("Scroll", -60, 22, TEAL, 10),
     band: Look("Moebius band", -60, 30, BLUE, 8),
-    roof: Look("Roof", -62, 42, BLUE, 6),
+    roof: Look("Roof", -110, 40, BLUE, 6),
     galaxy: Look("Galaxy", -90, 58, VIOLET, 5),
     coil: Look("Coil", 30, 24, TEAL),
-    saddle: Look("Saddle", -50, 35, VIOLET),
+    saddle: Look("Saddle", -70, 32, VIOLET),
     dome: Look("Dome", -75, 48, TEAL),
 }
 
@@ -218,17 +233,45 @@ def picture(V, Q, look) -> bytes:
     lines = [(V[line], EDGE, 0.9) for line in rims(V, Q)]
     if look.every:
         curves = mesh.polylines(Q).v[:: look.every]
-        lines += [(V[line], plot.COLOURS["v"], 0.7) for line in curves]
-    more = [(*fan(V[rim[:-1]]), plot.SINGULAR) for rim in rims(V, Q) if len(rim) < 10]
+        lines += [(V[line], plot.COLOURS["v"], 0.9) for line in curves]
+    layers = [tiles(V, Q, look.tint)]
+    layers += [(*fan(V[rim[:-1]]), plot.SINGULAR) for rim in rims(V, Q) if len(rim) < 10]
     view = plot.camera(*np.radians([look.azimuth, look.elevation]))
-    left, right, bottom, top = plot.board(ax, view, V, Q, lines, more, look.tint, PIXELS).extent
+    left, right, bottom, top = plot.scene(ax, view, layers, lines, PIXELS).extent
     half = max(right - left, top - bottom) / ROOM / 2
     ax.set_xlim((left + right) / 2 - half, (left + right) / 2 + half)
     ax.set_ylim((bottom + top) / 2 - half, (bottom + top) / 2 + half)
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png", dpi=DPI, metadata={"Software": None})
     plt.close(figure)
-    return same.few_tones(drawn.getvalue(), MOST, TONES)
+    return inked(drawn.getvalue(), look.tint)
+
+
+def inked(png, tint) -> bytes:
+    """The picture in shades of its own colours only, as many as `MOST` bytes allow."""
+    image = PIL.Image.open(io.BytesIO(png)).convert("RGB")
+    light, dark = np.array(to_rgb(LIGHT)), np.array(to_rgb(tint))
+    others = np.array([to_rgb(c) for c in ("white", EDGE, plot.COLOURS["v"], plot.SINGULAR)])
+    for shades in SHADES:
+        bright = np.linspace(DARKEST, 1, shades)[:, None]
+        inks = [light * bright, (light + dark) / 2 * bright, dark * bright, others]
+        palette, out = PIL.Image.new("P", (1, 1)), io.BytesIO()
+        palette.putpalette(np.round(255 * np.concatenate(inks)).astype(np.uint8).tobytes())
+        few = image.quantize(palette=palette, dither=PIL.Image.Dither.NONE)
+        few.save(out, "png", optimize=True)
+        if out.tell() <= MOST:
+            break
+    return out.getvalue()
+
+
+def tiles(V, Q, tint):
+    """The quads as a layer of `plot.scene`: parallelograms of this tint, with light corners."""
+    middles, black = mesh.checkerboard(V, Q)[:2]
+    black = black + len(V)
+    light = [np.stack([Q[:, k], black[:, k], black[:, k - 1]], axis=1) for k in range(4)]
+    T = np.concatenate([black[:, [0, 1, 2]], black[:, [0, 2, 3]], *light])
+    colours = np.repeat([to_rgb(tint), to_rgb(LIGHT)], [2 * len(Q), 4 * len(Q)], axis=0)
+    return np.concatenate([V, middles]), T, colours
 
 
 def rims(V, Q):

@@ -86,16 +86,14 @@ def _inside(png):
     return base64.b64encode(png).decode()
 
 
-def few_tones(png: bytes, most: int = LARGE, tones: tuple = TONES) -> bytes:
-    """The picture on white paper, with so few colours that its file has `most` bytes, if it can.
-
-    tones: how many colours it may have, the first with which it is small enough."""
+def few_tones(png: bytes, most: int = LARGE) -> bytes:
+    """The picture on white paper, with so few colours that its file has `most` bytes, if it can."""
     image = PIL.Image.open(io.BytesIO(png)).convert("RGBA")
     paper = PIL.Image.new("RGBA", image.size, "white")
     image = PIL.Image.alpha_composite(paper, image).convert("RGB")
-    for number in tones:
+    for tones in TONES:
         out, method = io.BytesIO(), PIL.Image.Quantize.MEDIANCUT
-        few = image.quantize(number, method, dither=PIL.Image.Dither.NONE)
+        few = image.quantize(tones, method, dither=PIL.Image.Dither.NONE)
         few.save(out, "png", optimize=True)
         if out.tell() <= most:
             break
