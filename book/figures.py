@@ -80,7 +80,7 @@ def _page(path, heading, name, entry, module, nets):
         .replace("[PNG](<", "{download}`PNG <")
         for x in lines
     ]
-    lines += [pages.scene(x) + "\n" for x in pages.SCENES.get(name, [])]
+    lines += [pages.scene(x, name) + "\n" for x in pages.SCENES.get(name, [])]
     item = f"Fig. {int(name[3:])}" if name.startswith("fig") else None
     if item:
         lines += [

@@ -2,6 +2,7 @@
 
 import ast
 import functools
+import html
 import json
 import pkgutil
 import re
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import nbformat
+import scenes
 import wording
 
 import inetlib
@@ -19,14 +21,14 @@ ROOT = HERE.parent
 TEXTS = {"PAPER.md": "paper", "ERRATA.md": "errata", "CHANGELOG.md": "changelog"}
 TEXTS |= {"CONTRIBUTING.md": "contributing", "README.md": "readme"}
 SCENES = {  # which scenes stand below which figure
-    "fig05": ["fig05"],
-    "fig07": ["fig07"],
-    "fig08": ["fig08"],
-    "fig09": ["fig09"],
-    "fig10": ["fig10"],
-    "fig11": ["fig11", "fig11_sphere"],
-    "fig12": ["fig12"],
-    "fig13": ["fig13"],
+    "fig05": ["web"],
+    "fig07": ["bending"],
+    "fig08": ["squares"],
+    "fig09": ["associate"],
+    "fig10": ["stereographic"],
+    "fig11": ["vase", "sphere"],
+    "fig12": ["patch"],
+    "fig13": ["hexagon", "inversion"],
 }
 
 
@@ -182,7 +184,7 @@ def notebooks(folder: Path):
                 "image": {"alt": next(filter(None, alts), "see the caption")}
             }
             for tag in cell.metadata.get("tags", []):
-                cells += [nbformat.v4.new_markdown_cell(scene(x)) for x in SCENES.get(tag, [])]
+                cells += [nbformat.v4.new_markdown_cell(scene(x, tag)) for x in SCENES.get(tag, [])]
         notebook.cells = cells
         nbformat.write(notebook, folder / path.name)
 
@@ -205,9 +207,11 @@ def _numbered(text, notebook):
     return "\n".join(lines)
 
 
-def scene(name: str) -> str:
-    """A scene as HTML; the still picture stays where there is no WebGL."""
-    return f'<div class="scene" data-scene="{name}"></div>'
+def scene(name: str, still: str) -> str:
+    """A scene as HTML; its figure stays where there is no WebGL.  The page is one folder deep."""
+    words = html.escape(scenes.SCENES[name][1])
+    picture = f'<img src="../_images/{still}.png" alt="{words}">'
+    return f'<div class="scene" data-scene="{name}">{picture}</div>'
 
 
 # -- tests, API
@@ -318,7 +322,8 @@ def table(text: str) -> str:
             told = ", ".join(check(x) for x in row.tests)
             names = ", ".join(code(x) for x in row.functions)
             link = f"[{row.item}]({address(wording.items(row.item)[0])})"
-            line = f"| {link} | {row.says} | {names} | {told} | {place(row)}, {row.heading} | {row.proof} |"
+            cells = link, row.says, names, told, f"{place(row)}, {row.heading}", row.proof
+            line = f"| {' | '.join(cells)} |"
         lines.append(line)
     return "\n".join(lines) + "\n"
 
@@ -434,22 +439,43 @@ def claimed() -> str:
             body.append("**Tests:** " + ", ".join(check(x) for x in row.tests) + ".")
             if match := re.match(r"Fig\. (\d+)", row.item):
                 body.append(f"  \n**Figure:** [as drawn here](figures/fig{int(match[1]):02}.md).")
-    page += [
-        "| | items | proved by sympy | random cases | nets | drawn | misprint | needs a condition | two readings |"
-    ]
+    columns = "items", "proved by sympy", "random cases", "nets", "drawn", "misprint"
+    columns += "needs a condition", "two readings"
+    page.append(f"| | {' | '.join(columns)} |")
     page += ["|---|" + "---:|" * 8, *counts, "", "An item may stand in several columns."]
     return "\n".join([*page, *body]) + "\n"
+
+
+def gallery(source: Path):
+    """The page of nets worth a poster, each with the lines that make it."""
+    folder = ROOT / "figures" / "gallery"
+    shutil.copytree(folder, source / "gallery_pictures")
+    page = [
+        "# Twelve nets",
+        "",
+        "Each is made by the lines below it, with `inetlib` and numpy.",
+        "",
+    ]
+    for name, net in json.loads((folder / "gallery.json").read_text(encoding="utf-8")).items():
+        off = "exact" if net["exact"] else f"off by at most {net['deviation_deg']:.2g} degrees"
+        angles = f"theta {net['theta_deg']:.4g}, theta0 {net['theta0_deg']:.4g} degrees, {off}"
+        page += ["", f"## {net['title']}", "", f"![{net['sentence']}](gallery_pictures/{name}.png)"]
+        page += ["", f"{net['sentence']} {net['quads']} quads; {angles}."]
+        page += ["", "```python", net["lines"].rstrip(), "```"]
+    (source / "gallery.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 
 def write(source: Path):
     """Write all pages into a folder."""
     for page in HERE.glob("*.md"):
-        shutil.copyfile(page, source / page.name)
+        text = wording.linked(page.read_text(encoding="utf-8"), address)
+        (source / page.name).write_text(text, encoding="utf-8")
     for file, name in TEXTS.items():
         text = (ROOT / file).read_text(encoding="utf-8")
         text = table(inside(text)) if file == "PAPER.md" else inside(text)
         (source / f"{name}.md").write_text(text, encoding="utf-8")
     (source / "claims.md").write_text(claimed(), encoding="utf-8")
+    gallery(source)
     import figures  # it needs this module
 
     figures.write(source / "figures")
