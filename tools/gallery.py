@@ -308,9 +308,9 @@ def save(name, png, entry) -> bool:
     """Write the picture of a net and its entry, unless both say the same as those on file."""
     path, found = FOLDER / f"{name}.png", read()
     with suppress(OSError):  # there is no picture, or a broken one
-        if same.claims(found.get(name), entry):
-            if same.picture(path.read_bytes(), png, *same.FEW):
-                return False
+        alike = same.picture(path.read_bytes(), png, *same.FEW)
+        if alike and same.claims(found.get(name), entry):
+            return False
     found[name] = entry
     entries = {net.__name__: found[net.__name__] for net in NETS if net.__name__ in found}
     with files.scratch(FOLDER) as new:
