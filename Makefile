@@ -9,11 +9,12 @@ endif
 BIN := .venv/$(SCRIPTS)
 READY := .venv/ready
 
-.PHONY: help figures test test-fast test-long test-browser test-oldest test-newest \
+.PHONY: help figures gallery test test-fast test-long test-browser test-oldest test-newest \
 	notebooks explore bench lint clean
 
 help:
 	@echo "make figures       run every notebook and redraw figures/"
+	@echo "make gallery       draw figures/gallery/: twelve nets and the lines that make them"
 	@echo "make test          all tests, every notebook rerun from the first cell"
 	@echo "make test-fast     the tests without notebooks, browser and other processors"
 	@echo "make test-long     what other processors would draw, in all settings; half an hour"
@@ -29,8 +30,11 @@ help:
 $(READY): pyproject.toml constraints.txt tools/setup.py
 	$(PYTHON) tools/setup.py
 
-figures: $(READY)
+figures: gallery
 	$(BIN)/python tools/redraw.py
+
+gallery: $(READY)
+	$(BIN)/python tools/gallery.py
 
 test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder

@@ -3,16 +3,18 @@
     python tools/gallery.py              all of them
     python tools/gallery.py vase coil    these
 
-Each is made by the lines of one function below, with `from inetlib import ...` and `import numpy
-as np` before them.  gallery.json has what a page needs: titles, sentences, these lines, and the
-numbers that `measure` finds.  What shows the same as before is kept, as with the figures."""
+Each is made by the lines of one function below.  gallery.json has what a page needs: titles,
+sentences, these lines with their imports, and the numbers that `measure` finds.  What shows the
+same as before is kept, as with the figures.  `make figures` calls this script, too."""
 
 import argparse
 import inspect
 import io
 import json
 import os
+import re
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +24,7 @@ import PIL.Image
 from matplotlib.colors import to_rgb
 from scipy.special import ellipj
 
+import inetlib
 from inetlib import (
     conformal,
     design,
@@ -38,7 +41,7 @@ from inetlib import (
     repair,
     solver,
     surfaces,
-)  # fmt: skip
+)
 from inetlib.drawings import same
 from inetlib.start import finished, listen
 
@@ -46,6 +49,7 @@ FOLDER = Path(__file__).resolve().parent.parent / "figures" / "gallery"
 SIZE, DPI, ROOM = 5.4, 200, 0.94  # inches of a square, dots per inch, its part that a net takes
 PIXELS = 1300  # of the longer side of a net, before it is put on paper
 MOST, SHADES, DARKEST = 130_000, (24, 16, 12, 9), 0.35  # bytes; of each colour; the least bright
+ROOMS = {*inetlib.__all__, "plot"}
 EXACT = 1e-6  # degrees: below is rounding
 BLUE, TEAL, VIOLET = "#7497cf", "#67aaa9", "#958fcb"  # of parallelograms
 LIGHT, EDGE = "#f6f7fa", "#1d3557"
@@ -54,16 +58,10 @@ LIGHT, EDGE = "#f6f7fa", "#1d3557"
 def vase():
     """A web of loxodromes and parallels on a vase, exact, found row by row."""
     theta, theta0 = np.radians([75, 60])
-    points = [
-        (0.42, 0),
-        (0.8, 0.5),
-        (0.98, 1.05),
-        (0.78, 1.7),
-        (0.4, 2.3),
-        (0.36, 2.75),
-        (0.6, 3.15),
-    ]
-    net = loxodrome.web(surfaces.spline_profile(points), theta, theta0, 44)
+    radii = 0.42, 0.8, 0.98, 0.78, 0.4, 0.36, 0.6
+    heights = 0, 0.5, 1.05, 1.7, 2.3, 2.75, 3.15
+    profile = surfaces.spline_profile(np.transpose([radii, heights]))
+    net = loxodrome.web(profile, theta, theta0, 44)
     return net.V, net.Q, (theta, theta0)
 
 
@@ -111,7 +109,7 @@ def scroll():
 
 def band():
     """A Moebius band with a round boundary, from a minimal surface of the 3-sphere, sampled."""
-    theta, theta0 = np.radians([75, 90])  # mirrored where the band closes: so theta0 is right
+    theta, theta0 = np.radians([75, 90])  # where it closes theta0 becomes its supplement
     z = conformal.sheared_grid(theta, theta0, 64, 32, 0, np.pi / 64)
     x, (sn, cn, *_) = z.real, ellipj(2 * (z.imag - z.imag.mean()), 0.75)
     a, b, c, d = np.cos(2 * x) * cn, np.sin(2 * x) * cn, np.cos(x) * sn, np.sin(x) * sn
@@ -155,7 +153,7 @@ def saddle():
 def dome():
     """Rings of quads around a hexagon, over a dome with six waves; the solver makes them exact."""
     theta, theta0 = np.radians([60, 45])
-    V, Q, hexagon = mesh.polygon_rings(6, 12)
+    V, Q, hexagon = mesh.polygon_rings(6, 14)
     z = (V[:, 0] + 1j * V[:, 1]) / np.hypot(V[:, 0], V[:, 1]).max()
     V = np.stack([z.real, z.imag, 0.5 * (1 - abs(z) ** 2) + 0.12 * (z**6).real], axis=1)
     found = solver.optimize(V, Q, theta, theta0, reference=reference.mesh(V, Q), polygons=[hexagon])
@@ -210,6 +208,7 @@ def facts(net, V, Q, angles) -> dict:
     """What gallery.json says of a net: words, its lines, and numbers by `measure`, rounded."""
     off, quality = np.degrees(measure.deviations(V, Q, *angles).max()), measure.quality(V, Q)
     theta, theta0 = (round(float(np.degrees(angle)), 6) for angle in angles)
+    lines = inspect.getsource(net)
     return {
         "title": NETS[net].title,
         "sentence": inspect.getdoc(net),
@@ -220,8 +219,16 @@ def facts(net, V, Q, angles) -> dict:
         "deviation_deg": round(float(off), 7),  # the largest of both angles, over all faces
         "flips": quality.flips,
         "darts": quality.darts,
-        "lines": inspect.getsource(net),
+        "imports": imports(lines),
+        "lines": lines,
     }
+
+
+def imports(lines) -> str:
+    """What has to be imported before these lines, as lines."""
+    found = {word for word in re.findall(r"\b(\w+)\.\w", lines) if word in ROOMS}
+    extern = ["import numpy as np"] + ["from scipy.special import ellipj"] * ("ellipj(" in lines)
+    return "\n".join([*extern, "", f"from inetlib import {', '.join(sorted(found))}", ""])
 
 
 def picture(V, Q, look) -> bytes:
@@ -290,17 +297,20 @@ def fan(corners):
 
 
 def read() -> dict:
-    """What is in gallery.json, {name: facts}; empty when there is none."""
-    path = FOLDER / "gallery.json"
-    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    """What is in gallery.json, {name: facts}; empty when it is missing or broken."""
+    try:
+        return {} | json.loads((FOLDER / "gallery.json").read_text(encoding="utf-8"))
+    except (OSError, TypeError, ValueError):
+        return {}
 
 
 def save(name, png, entry) -> bool:
     """Write the picture of a net and its entry, unless both say the same as those on file."""
     path, found = FOLDER / f"{name}.png", read()
-    old = path.read_bytes() if path.exists() and name in found else None
-    if old and same.claims(found[name], entry) and same.picture(old, png, *same.FEW):
-        return False
+    with suppress(OSError):  # there is no picture, or a broken one
+        alike = same.picture(path.read_bytes(), png, *same.FEW)
+        if alike and same.claims(found.get(name), entry):
+            return False
     found[name] = entry
     entries = {net.__name__: found[net.__name__] for net in NETS if net.__name__ in found}
     with files.scratch(FOLDER) as new:
