@@ -9,16 +9,18 @@ endif
 BIN := .venv/$(SCRIPTS)
 READY := .venv/ready
 
-.PHONY: help figures gallery test test-fast test-long test-browser test-oldest test-newest \
-	notebooks explore bench lint clean
+.PHONY: help figures gallery book test test-fast test-long test-browser test-book test-oldest \
+	test-newest notebooks explore bench lint clean
 
 help:
 	@echo "make figures       run every notebook and redraw figures/"
 	@echo "make gallery       draw figures/gallery/: twelve nets and the lines that make them"
+	@echo "make book          the book, to be read in any browser: book/_build/html/index.html"
 	@echo "make test          all tests, every notebook rerun from the first cell"
 	@echo "make test-fast     the tests without notebooks, browser and other processors"
 	@echo "make test-long     what other processors would draw, in all settings; half an hour"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
+	@echo "make test-book     the book, every page of it, in Chromium with no network"
 	@echo "make test-oldest   all tests with every declared package at its lower bound"
 	@echo "make test-newest   all tests with the newest packages, whatever they are today"
 	@echo "make explore       turn the angles of nets in your browser (FILE=surface.obj for your own)"
@@ -36,6 +38,9 @@ figures: gallery
 gallery: $(READY)
 	$(BIN)/python tools/gallery.py
 
+book: $(READY)
+	$(BIN)/python book/build.py
+
 test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
@@ -48,6 +53,10 @@ test-long: $(READY)
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py
 	$(BIN)/python -m pytest -m browser -rs -s
+
+test-book: book
+	$(BIN)/python tools/browser.py
+	$(BIN)/python -m pytest --book -m book -rs -n auto
 
 test-oldest test-newest: test-%:
 	$(PYTHON) tools/setup.py --versions $*

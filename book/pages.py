@@ -120,11 +120,22 @@ def inside(text: str, depth: int = 0) -> str:
 # -- notebooks
 
 
-def headings(notebook: str) -> list[str]:
-    """The headings of a notebook, without their marks."""
+@functools.cache
+def headings(notebook: str) -> dict[str, str]:
+    """The headings of a notebook with what they name, here or in small print below."""
     cells = stored(notebook).cells
-    lines = [x for c in cells if c.cell_type == "markdown" for x in c.source.splitlines()]
-    return [line.lstrip("# ") for line in lines if re.match(r"#+ ", line)]
+    lines = [x for c in cells if c.cell_type == "markdown" for x in c.source.splitlines() if x]
+    following = zip(lines, [*lines[1:], ""], strict=True)
+    small = [
+        (x.lstrip("# "), y if y.startswith("<small>") else "") for x, y in following if x[0] == "#"
+    ]
+    return {heading: f"{heading} {below}" for heading, below in small}
+
+
+def about(row: Row) -> list[str]:
+    """The headings of its notebook that name a row."""
+    wanted = re.compile(rf"(?<!\w){re.escape(row.heading)}(?!\w)")
+    return [x for x, words in headings(row.notebook).items() if wanted.search(words)]
 
 
 @functools.cache
@@ -135,9 +146,7 @@ def stored(notebook: str):
 
 def place(row: Row, depth: int = 0) -> str:
     """A link to the heading of a notebook where a row is treated."""
-    wanted = re.compile(rf"(?<!\w){re.escape(row.heading)}(?!\w)")
-    found = [x for x in headings(row.notebook) if wanted.search(x)]
-    mark = f"#{wording.slug(found[0])}" if found else ""
+    mark = f"#{wording.slug(about(row)[0])}" if about(row) else ""
     return f"[{row.notebook}]({'../' * depth}notebooks/{row.notebook}.ipynb{mark})"
 
 
@@ -196,9 +205,7 @@ def _numbered(text, notebook):
         lines.append(re.sub(r"^#{4} (.*)", r"**\1**", line))  # a level below is no heading here
         if re.match(r"##+ ", line):
             here = [row for row in rows() if row.notebook == notebook]
-            here = [
-                row for row in here if re.search(rf"(?<!\w){re.escape(row.heading)}(?!\w)", line)
-            ]
+            here = [row for row in here if line.lstrip("# ") in about(row)]
             if here:
                 names = dict.fromkeys(name for row in here for name in row.functions[:3])
                 links = [f"[{row.item}]({address(row.item, 1)})" for row in here]
@@ -461,7 +468,7 @@ def gallery(source: Path):
         angles = f"theta {net['theta_deg']:.4g}, theta0 {net['theta0_deg']:.4g} degrees, {off}"
         page += ["", f"## {net['title']}", "", f"![{net['sentence']}](gallery_pictures/{name}.png)"]
         page += ["", f"{net['sentence']} {net['quads']} quads; {angles}."]
-        page += ["", "```python", net["lines"].rstrip(), "```"]
+        page += ["", "```python", net["imports"].rstrip() + "\n", "", net["lines"].rstrip(), "```"]
     (source / "gallery.md").write_text("\n".join(page) + "\n", encoding="utf-8")
 
 

@@ -17,6 +17,9 @@ settings.load_profile("still")
 
 def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="the tests marked long, too: half an hour")
+    parser.addoption(
+        "--book", action="store_true", help="the tests marked book, too: make book first"
+    )
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -31,10 +34,11 @@ def pytest_pyfunc_call(pyfuncitem):
 def pytest_collection_modifyitems(config, items):
     # First the files that take longest, so that no core waits for another one at the end.
     items.sort(key=lambda item: item.path.stem not in ("test_elsewhere", "test_notebooks"))
-    if not config.getoption("--long"):
-        long = [item for item in items if item.get_closest_marker("long")]
-        config.hook.pytest_deselected(items=long)
-        items[:] = [item for item in items if item not in long]
+    for name in ("long", "book"):
+        if not config.getoption(f"--{name}"):
+            marked = [item for item in items if item.get_closest_marker(name)]
+            config.hook.pytest_deselected(items=marked)
+            items[:] = [item for item in items if item not in marked]
 
 
 @pytest.fixture(scope="module")
