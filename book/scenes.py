@@ -152,7 +152,7 @@ def stereographic(around=48, rows=16, top=5, steps=16):
     V, Q = isothermal.sample(surfaces.SPHERE, z)
     states = [State("the sphere", V, Q, *isothermal.ANGLES)]
     for k in np.arange(1, steps + 1) / steps:
-        height = 1 / np.sin(k * np.pi / 2)  # of the centre; at 1 it is the north pole
+        height = 1 / np.tan(k * np.pi / 4)  # of the centre; at 1 it is the north pole
         inversion = moebius.inversion((0, 0, height), np.sqrt(height**2 + 1))
         upright = moebius.apply(inversion, V) * [1, 1, -1]
         label = "the plane" if k == 1 else f"{100 * k:.0f} %"

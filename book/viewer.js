@@ -72,6 +72,11 @@
     const turn = (a) => about(right, -up, about(unit(viewUp), aside, a));
     return { ...rest, focalPoint, position: plus(focalPoint, turn(away)), viewUp: turn(viewUp) };
   };
+  const carried = ({ position, focalPoint, viewUp, ...rest }, angle) => { // around the upright axis
+    const turn = (a) => about([0, 0, 1], angle, a);
+    const place = plus(focalPoint, turn(minus(position, focalPoint)));
+    return { ...rest, focalPoint, position: place, viewUp: turn(viewUp) };
+  };
   const nearer = ({ position, focalPoint, ...rest }, factor) => (
     { ...rest, focalPoint, position: plus(focalPoint, minus(position, focalPoint), 1 / factor) }
   );
@@ -172,6 +177,9 @@
       <div class="scene-tools">
         <button type="button" aria-label="nearer" @click="zoom(1.25)">+</button>
         <button type="button" aria-label="farther" @click="zoom(0.8)">\u2212</button>
+        <button type="button" :aria-pressed="turning" @click="turning = !turning">
+          {{ turning ? "stop" : "turn" }}
+        </button>
         <button type="button" @click="front">front view</button>
       </div>
     </div>
@@ -212,6 +220,8 @@
       at: kept.at ?? scene.first,
       ready: false,
       theme: 0,
+      turning: kept.turning ?? ("turn" in element.dataset
+        && !matchMedia("(prefers-reduced-motion: reduce)").matches),
       colours: Vue.markRaw(palette(element)),
       on: kept.on ?? { inner: true, u: true, v: true, d1: false, d2: false },
       titles: TITLES,
@@ -250,6 +260,7 @@
       },
     },
     watch: {
+      turning(on) { if (on) this.spin(); },
       at(to, from) {
         const { states } = this.scene;
         const camera = following(this.$refs.view.getCamera(), states[from].camera, states[to].camera);
@@ -258,6 +269,8 @@
     },
     mounted() {
       const { canvas } = this.$refs;
+      if (this.turning) setTimeout(this.spin, 300);
+      canvas.addEventListener("pointerdown", () => { this.turning = false; }, { capture: true });
       canvas.addEventListener("wheel", (event) => { // the page scrolls on; with ctrl the net is near
         event.stopPropagation();
         if (!event.ctrlKey) return;
@@ -276,9 +289,24 @@
       },
       front() {
         kept.camera = undefined;
+        this.turning = false;
         this.aim(this.state.camera);
       },
       zoom(factor) { this.aim(nearer(this.$refs.view.getCamera(), factor)); },
+      spin() { // twelve degrees a second, as long as it is seen
+        let last = 0;
+        const turn = (now) => {
+          if (!this.turning || element.inet !== this) return;
+          if (last && !away(element)) {
+            const angle = (Math.min(now - last, 100) / 1000) * 0.21;
+            this.aim(carried(this.$refs.view.getCamera(), angle));
+          }
+          last = now;
+          kept.frame = requestAnimationFrame(turn);
+        };
+        cancelAnimationFrame(kept.frame);
+        kept.frame = requestAnimationFrame(turn);
+      },
       press(event) {
         const step = Math.PI / 18;
         const turn = {
@@ -289,10 +317,12 @@
         else if ("+=".includes(event.key)) this.zoom(1.25);
         else if (event.key === "-") this.zoom(0.8);
         else return;
+        this.turning = false;
         event.preventDefault();
       },
       keep() { // what a view that is made again begins with
-        Object.assign(kept, { at: this.at, on: { ...this.on }, camera: this.$refs.view.getCamera() });
+        const { at, on, turning } = this;
+        Object.assign(kept, { at, on: { ...on }, turning, camera: this.$refs.view.getCamera() });
       },
       repaint() { // a view has its background from the start
         this.keep();

@@ -49,6 +49,7 @@ def folder(tmp_path_factory):
     scenes.write(static / "scenes")
     pages = {name: SCENE.format(name) for name in scenes.SCENES}
     pages |= {"all": "".join(pages.values()), "none": "<p>Nothing turns here.</p>"}
+    pages["turning"] = SCENE.format("vase").replace("data-scene", "data-turn data-scene")
     pages["unknown"] = SCENE.format("unknown")
     pages["rho"] = re.search(r'<div class="rho".*?</div>', (BOOK / "rho.md").read_text())[0]
     for name, body in pages.items():
@@ -223,6 +224,38 @@ def test_keys_turn_and_zoom(visit):
     assert differ(before, picture(page)) < 0.005
     page.keyboard.press("w")  # would be wires, in vtk.js
     assert differ(before, picture(page)) < 0.005
+
+
+def test_a_button_turns_the_net_and_stops_it(visit):
+    page = visit("hexagon")
+    before = picture(page)
+    page.click("text=turn")
+    page.wait_for_timeout(1500)
+    page.click("text=stop")
+    turned = picture(page)
+    assert differ(before, turned) > 0.02
+    page.wait_for_timeout(300)
+    assert differ(turned, picture(page)) == 0
+
+
+def test_a_net_that_turns_by_itself_stops_when_it_is_touched(visit):
+    page = visit("turning")
+    box = page.locator(".scene-view").bounding_box()
+    looks = [image(page.locator(".scene-view").screenshot())]
+    page.wait_for_timeout(1500)
+    looks.append(image(page.locator(".scene-view").screenshot()))
+    assert differ(*looks) > 0.02
+    page.mouse.click(box["x"] + 100, box["y"] + 100)
+    still = picture(page)
+    page.wait_for_timeout(300)
+    assert differ(still, picture(page)) == 0
+
+
+def test_who_wants_no_motion_gets_none(visit):
+    page = visit("turning", reduced_motion="reduce")
+    before = picture(page)
+    page.wait_for_timeout(1000)
+    assert differ(before, picture(page)) == 0
 
 
 def test_the_wheel_scrolls_the_page_and_zooms_with_ctrl(visit):
