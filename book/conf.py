@@ -24,6 +24,8 @@ html_theme_options = {
     "show_navbar_depth": 1,
 }
 smartquotes = False
+html_show_search_summary = False  # it would fetch, which a page from a file may not
+html_context = {"default_mode": "auto"}
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
