@@ -114,8 +114,11 @@ def show(drawing: Drawing, colours: int | None = None):
     """Show a drawing below the cell of a notebook: as matplotlib does, or as a small PNG.
 
     colours: of the PNG (IPython Image).  The words of the drawing are stored beside the picture,
-    as its alternative text; what is shown is closed.  Nothing is written, unless somebody says
-    where: see `asked`.  To keep a drawing of your own, `save` it."""
+    as its alternative text, for books and HTML made of the notebook; JupyterLab and GitHub do not
+    read it, so a caption stands below, see tools/outputs.py.  What is shown is closed.
+
+    Nothing is written, unless somebody says where: see `asked`.  To keep a drawing of your own,
+    `save` it."""
     if folder := asked():
         save(drawing, folder)
     from IPython.display import Image, display  # only a notebook needs it

@@ -6,6 +6,7 @@ differ more says so by a tag (see tools/outputs.py).  Pictures of another matplo
 pinned one need only look alike."""
 
 import base64
+import html
 import io
 import re
 import shutil
@@ -17,6 +18,7 @@ import matplotlib.image
 import nbformat
 import outputs  # tools/outputs.py
 import pytest
+from nbconvert import HTMLExporter
 
 from inetlib import publish
 from inetlib.drawings import same
@@ -134,8 +136,12 @@ def test_a_picture_has_a_caption_and_a_folded_cell_says_what_it_proves(path):
             section = cell.source if re.search("^#", cell.source, re.MULTILINE) else section
             before = cell.source
             continue
-        if any("image/png" in o.get("data", {}) for o in cell.outputs):
-            assert re.match(r"\*\w[^*]+[.]\*(\n|$)", after.source), cell.source
+        for output in cell.outputs:
+            if "image/png" in output.get("data", {}):
+                said = output.metadata["image/png"]["alt"]
+                assert len(said) >= 20 and "<" not in said and "$" not in said, cell.source
+                assert output.data["text/plain"] == said
+                assert len(outputs.caption(after.source)) >= 20, cell.source
         folded = "hide-input" in outputs.tags(cell)
         assert folded == cell.metadata.get("jupyter", {}).get("source_hidden", False)
         if folded:
@@ -143,6 +149,34 @@ def test_a_picture_has_a_caption_and_a_folded_cell_says_what_it_proves(path):
             assert "proof" in heading.lower() or "> **Erratum" in before, cell.source
             assert before, cell.source
             before = ""  # a sentence for each
+
+
+def test_a_picture_without_words_gets_those_of_its_caption():
+    picture = nbformat.v4.new_output("display_data", {"image/png": "", "text/plain": "<Figure>"})
+    cell = nbformat.v4.new_code_cell(outputs=[picture])
+    outputs.describe(
+        cell, "*A net under $z^2$, $\\theta = 60\\degree$, of [3.3](3_3.ipynb).*\n\nMore."
+    )
+    assert picture.metadata["image/png"]["alt"] == "A net under z^2, theta = 60 degrees, of 3.3."
+    assert picture.data["text/plain"] == picture.metadata["image/png"]["alt"]
+    picture.metadata["image/png"]["alt"] = "Its own words."
+    outputs.describe(cell, "*A caption.*")
+    assert picture.data["text/plain"] == "Its own words."
+    assert outputs.caption("No caption, *but this.*") == outputs.caption("") == ""
+
+
+def test_a_page_made_of_a_notebook_reads_out_the_words_of_its_pictures():
+    path = ROOT / "notebooks" / "4_isogonal_nets.ipynb"
+    page, _ = HTMLExporter(template_name="classic").from_filename(path)
+    pictures = [o for c in cells_of(path) for o in c.outputs if "image/png" in o.get("data", {})]
+    read = [html.unescape(x) for x in re.findall(r'<img alt="([^"]*)"', page)]
+    assert read == [o.metadata["image/png"]["alt"] for o in pictures] != []
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_cells_of_code_are_short_and_the_first_one_most(path):
+    lines = [len(cell.source.splitlines()) for cell in cells_of(path)]
+    assert lines[0] <= 12 and max(lines) <= 18
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

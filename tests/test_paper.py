@@ -181,6 +181,20 @@ def test_every_numbered_item_stands_exactly_once():
     assert list(rows(1)) == BEYOND
 
 
+def test_a_heading_begins_with_the_items_that_it_stands_for():
+    """ITEM, ITEM: title.  Any other item of a heading comes after the colon, as a mention."""
+    one = rf"(?:{ITEM.pattern}|(?:Sec|App)\. [A\d][.\d]*)"
+    begin, named = re.compile(rf"{one}(?:, {one})*(?:, remark)?: \S"), {}
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        for line in re.findall("##+ ([^#]+)", headings(path.stem, 0)):
+            first = begin.match(line)
+            assert first or not ITEM.search(line.partition(":")[0]), line
+            named.setdefault(path.stem, set()).update(ITEM.findall(first[0] if first else ""))
+    for item in EVERYTHING:
+        stem = re.match(r"\[(\w+)\]", rows()[item][2])[1]
+        assert item in named[stem], f"no heading of {stem} begins with {item}"
+
+
 EVERY_ROW = pytest.mark.parametrize(("part", "item"), [(k, i) for k in (0, 1) for i in rows(k)])
 
 

@@ -7,6 +7,7 @@ Text may differ by one unit of the last digit it shows, pictures by a little in 
 
 import base64
 import os
+import re
 from importlib.metadata import version
 from pathlib import Path
 
@@ -67,8 +68,33 @@ def shown(cell):
         elif output.output_type == "error":
             found.append(("error", "\n".join(output.traceback)))
         else:
-            found += sorted(output.data.items())
+            drawn = "image/png" in output.data  # the text beside it says what it shows: `describe`
+            found += sorted(
+                (k, x) for k, x in output.data.items() if k != "text/plain" or not drawn
+            )
     return found
+
+
+def caption(below):
+    """The sentence in italics at the top of the Markdown below a picture, as plain words, or ""."""
+    found = re.match(r"\*(\w[^*]+[.])\*(\n|$)", below)
+    words = re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", found[1] if found else "")  # of a link
+    words = re.sub(r"\^\\circ|\\degree", " degrees", words).replace("\\sqrt", "root ")
+    return re.sub(r"\\[, ]?|[${}`]", "", words)
+
+
+def describe(cell, below):
+    """Give the pictures of a cell words: their alternative text or, where they have none, the
+    caption `below`.
+
+    Stored twice: as "alt" of image/png, which books by myst-nb and HTML by nbconvert read out
+    (`--template classic`; its default template does not), and in the place of "<Figure ...>", for
+    whoever shows text only.  JupyterLab and GitHub read out neither, but the caption."""
+    for output in cell.outputs:
+        if "image/png" in output.get("data", {}):
+            about = output.metadata.setdefault("image/png", {})
+            if words := about.get("alt") or caption(below):
+                about["alt"] = output.data["text/plain"] = words
 
 
 def few_tones(picture):

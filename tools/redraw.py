@@ -105,9 +105,11 @@ def run(notebook, folder, bar):
     with kernel(client, folder):
         for k, cell in enumerate(notebook.cells):  # `execute` would take our signal handlers away
             client.execute_cell(cell, k, execution_count=client.code_cells_executed + 1)
-    for cell, old in zip(notebook.cells, stored, strict=True):
+    below = [cell.source for cell in notebook.cells[1:]] + [""]
+    for cell, old, words in zip(notebook.cells, stored, below, strict=True):
         if cell.cell_type == "code":
             keep(cell, old)
+            outputs.describe(cell, words)
     return seconds
 
 
