@@ -111,10 +111,17 @@ def inside(text: str, depth: int = 0) -> str:
             return f"[{words}]({mark})"
         return words if words.startswith("`") else f"{words} (`{path}`)"
 
+    text = re.sub(r"(?m)^> \*\*Erratum (E\d+)\.\*\* ((?:.*\n?)(?:^>.*\n?)*)", _box, text)
     text = re.sub(
         r"(?<!!)\[([^\]]+)\]\((?!\w+:)([^)#\s]*)(#[^()\s]*(?:\([^()\s]*\)[^()\s]*)*)?\)", link, text
     )
     return wording.linked(text, lambda item: address(item, depth))
+
+
+def _box(match):
+    """An erratum of a notebook as a box."""
+    words = re.sub(r"(?m)^> ?", "", match[2]).rstrip()
+    return f":::{{admonition}} Erratum {match[1]}\n:class: warning\n\n{words}\n:::\n"
 
 
 # -- notebooks

@@ -103,3 +103,10 @@ def test_links_that_lead_nowhere_are_found(tmp_path):
     )
     (tmp_path / "b.html").write_text('<p id="y"><a href="a.html"><a href="a.html?q=1#x">')
     assert build.broken(tmp_path) == ["a.html: b.html#z", "a.html: c.png"]
+
+
+def test_an_erratum_of_a_notebook_becomes_a_box():
+    text = "a\n\n> **Erratum E11.** One\n> two.\n\nb\n"
+    title = "[E11](errata.md#e11-caption-of-fig-1-and-app-a-1)"
+    box = f":::{{admonition}} Erratum {title}\n:class: warning\n\nOne\ntwo.\n:::\n"
+    assert pages.inside(text) == f"a\n\n{box}\nb\n"
