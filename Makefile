@@ -45,7 +45,7 @@ test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not notebook and not browser and not elsewhere"
+	$(BIN)/python -m pytest -p no:nbmake -n auto --dist loadfile --no-loadscope-reorder -m "not notebook and not browser and not elsewhere"
 
 test-long: $(READY)
 	$(BIN)/python -m pytest -m "long or elsewhere" --long -n auto --dist load

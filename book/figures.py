@@ -18,6 +18,7 @@ def write(folder: Path):
     """The gallery of figures and a page for each."""
     folder.mkdir()
     manifest = publish.read_manifest(ROOT / "figures")
+    manifest = dict(sorted(manifest.items(), key=lambda x: not x[0].startswith("fig")))
     index = [
         "# Figures",
         "",

@@ -487,6 +487,7 @@ def write(source: Path):
     for file, name in TEXTS.items():
         text = (ROOT / file).read_text(encoding="utf-8")
         text = table(inside(text)) if file == "PAPER.md" else inside(text)
+        text = re.sub(r"`(test_e\d+_\w+)`", lambda m: check(f"test_errata.py::{m[1]}"), text)
         (source / f"{name}.md").write_text(text, encoding="utf-8")
     (source / "claims.md").write_text(claimed(), encoding="utf-8")
     gallery(source)

@@ -14,6 +14,9 @@ matplotlib.use("Agg")
 settings.register_profile("still", derandomize=True, deadline=None, database=None, max_examples=60)
 settings.load_profile("still")
 
+LONGEST = ["elsewhere", "notebooks", "stopping", "drawings", "design", "explorer_serve"]
+LONGEST += ["properties", "explorer", "fuzz", "publish", "view", "loxodrome", "surfaces"]
+
 
 def pytest_addoption(parser):
     parser.addoption("--long", action="store_true", help="the tests marked long, too: half an hour")
@@ -33,7 +36,8 @@ def pytest_pyfunc_call(pyfuncitem):
 
 def pytest_collection_modifyitems(config, items):
     # First the files that take longest, so that no core waits for another one at the end.
-    items.sort(key=lambda item: item.path.stem not in ("test_elsewhere", "test_notebooks"))
+    order = {f"test_{name}": k for k, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(order)))
     for name in ("long", "book"):
         if not config.getoption(f"--{name}"):
             marked = [item for item in items if item.get_closest_marker(name)]

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 
-import nbformat
 import numpy as np
 import pytest
 from browsing import PATIENCE, image, is_drawn
@@ -25,6 +24,8 @@ CELLS = [
 @pytest.fixture
 def lab(tmp_path):
     """The address of a JupyterLab on this machine, in a folder with one notebook."""
+    import nbformat
+
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in CELLS])
     notebook.metadata.kernelspec = {"name": "python3", "display_name": "Python 3"}
     nbformat.write(notebook, tmp_path / "look.ipynb")

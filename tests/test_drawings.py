@@ -35,12 +35,20 @@ CAST = "fig07", "fig09", "fig10"  # where rays are cast
 SCENES: dict = {}  # of the figures drawn: [(view, layers, `raster.Picture`, lines on it)]
 
 
+render = raster.render
+
+
+def coarse(view, layers, pixels, lift):
+    """A surface painted coarsely, and quickly."""
+    return render(view, layers, min(pixels, 150), lift)
+
+
 @cache
 def drawn(name):
-    made, render, in_front = SCENES.setdefault(name, []), raster.render, raster.in_front
+    made, in_front = SCENES.setdefault(name, []), raster.in_front
 
     def watched(view, layers, pixels, lift):
-        pixels = min(pixels, 400 if name in CAST else 150)  # quick
+        pixels = min(pixels, 400 if name in CAST else 150)
         made.append((view, layers, render(view, layers, pixels, lift), []))
         return made[-1][2]
 
@@ -223,7 +231,8 @@ def test_the_leaf_is_as_near_its_outline_as_it_says():
 
 
 def test_each_strong_energy_is_the_best_at_its_own():
-    figure, lines = optimisation.energies()
+    with patch.object(raster, "render", coarse):
+        figure, lines = optimisation.energies()
     plt.close(figure)
     titles = [ax.get_title(loc="left") for ax in figure.axes if ax.get_title(loc="left")]
     assert titles == [line[0] for line in lines] == ["start", *optimisation.ENERGIES]
@@ -259,7 +268,8 @@ def test_panels_show_every_quad_and_motif_and_the_range_of_planarity():
     assert own_surface.warps(lifted, np.array([[0, 1, 2, 3]])) == pytest.approx([wanted])
     V, Q = surfaces.freeform_patch(5, 4)
     curves = motif.place(V, Q, motif.weave(1.0, 1.2), 1.0, 1.2)
-    figure = own_surface.panels(V, Q, curves)
+    with patch.object(raster, "render", coarse):
+        figure = own_surface.panels(V, Q, curves)
     plt.close(figure)
     shown = [ax for ax in figure.axes if ax.get_title(loc="left")]
     assert [len(ax.images) for ax in shown] == [1, 1, 1]

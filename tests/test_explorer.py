@@ -599,7 +599,10 @@ def test_saved_nets_are_the_files_that_io_writes(vase, scratch, tmp_path, suffix
 
 
 @each_layout
-def test_saved_drawings_are_xml_and_the_same_each_time(scratch, families, parallelograms):
+def test_saved_drawings_are_xml_and_the_same_each_time(
+    scratch, monkeypatch, families, parallelograms
+):
+    monkeypatch.setattr(look, "PIXELS", 200)  # quick
     drawn = set()
     for shade in (False, True):
         looks = {"families": families, "parallelograms": parallelograms, "shade": shade}

@@ -47,6 +47,12 @@ def test_values_by_hand_for(what):
     assert found == pytest.approx([lam, mu, theta, theta0], rel=1e-14)
 
 
+@pytest.mark.parametrize("what", HAND)
+def test_all_four_numbers_of_a_face_by_hand_for(what):
+    (V, Q), wanted = HAND[what]
+    np.testing.assert_allclose(measure.faces(V, Q)[:, 0], wanted, rtol=1e-14)
+
+
 def test_vectors_are_the_diagonals_and_medial_lines():
     wanted = [[1, -1, 0], [2, 1, 1], [1.5, 0, 0.5], [0.5, 1, 0.5]]
     np.testing.assert_array_equal(np.concatenate(measure.vectors(*HAND["a skew quad"][0])), wanted)
@@ -263,8 +269,9 @@ def test_spread_by_hand_about_the_mean_and_about_a_target():
     for bad in ([], [1, np.nan], [np.inf]):
         with pytest.raises(ValueError, match="at least one value, all of them finite"):
             measure.spread(bad)
-    with pytest.raises(ValueError, match="target = nan"):
-        measure.spread([1.0], target=np.nan)
+    for bad, words in ((np.nan, "target = nan"), (np.array([1, np.nan]), r"target = \[ *1. nan")):
+        with pytest.raises(ValueError, match=words):
+            measure.spread([1.0, 2.0], target=bad)
 
 
 @pytest.mark.parametrize("cell", [(0, 0), (1, 1), (2, 1), (3, 2), (0, 2)])
@@ -306,7 +313,8 @@ def test_planarity_area_ratio_and_aspect_by_hand():
     assert measure.quality(V, Q).planarity == pytest.approx(h / 2**0.5, rel=1e-14)
     V, Q = quad((0, 2, 0), (0, 0, h), (2, 0, 0), (1, 1, h))  # lengths 2 sqrt 2 and sqrt 2
     assert measure.quality(V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
-    assert measure.quality(5 * V, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
+    for W in (5 * V, V + np.array([3, 5, 7])):
+        assert measure.quality(W, Q).planarity == pytest.approx(h / (1.5 * 2**0.5), rel=1e-14)
     found = measure.quality(*sheared(3, 2, v=(0, 1, 0)))
     assert (found.flips, found.flipped.tolist()) == (0, [])
     assert (found.darts, found.nonconvex.tolist()) == (0, [])
@@ -319,8 +327,11 @@ def test_planarity_area_ratio_and_aspect_by_hand():
     tall = measure.quality(V[:, [1, 0, 2]] * [-1, 1, 1], mesh.grid_quads(3, 1))
     assert tall.aspect == pytest.approx(4)
     assert measure.quality(3 * V, mesh.grid_quads(3, 1)).aspect == pytest.approx(4)
-    with pytest.raises(ValueError, match="face 0-1-2-3 has no area: its diagonals are parallel"):
-        measure.quality(*quad((0, 0), (1, 1), (1, 0), (3, 1)))
+    V, Q = quad((0, 0), (1, 1), (1, 0), (3, 1))
+    W, R = sheared(1, 1)
+    for mesh_ in ((V, Q), (np.concatenate([V, W]), np.concatenate([Q, R + 4]))):
+        with pytest.raises(ValueError, match="face 0-1-2-3 has no area: its diagonals are para"):
+            measure.quality(*mesh_)
 
 
 @pytest.mark.parametrize("beyond", [-0.1, 0.1])
@@ -332,6 +343,19 @@ def test_darts_are_faces_whose_diagonals_meet_beyond_an_end(beyond):
         found = measure.quality(V, Q)
         assert found.nonconvex.tolist() == [0][: found.darts]
         assert found.darts == (beyond > 0)
+
+
+@given(seeds, st.booleans())
+def test_an_affine_map_leaves_darts_darts_and_other_faces_as_they_are(seed, dart):
+    """So oblique diagonals are judged as well; the plane may be mapped anywhere into space."""
+    x = 1.1 if dart else 0.9
+    V, Q = quad((0, 0), (x, -1), (1, 0), (x, 3))
+    rng = np.random.default_rng(seed)
+    turn = Rotation.from_quat(rng.normal(size=4))
+    oblique = np.array([[1, rng.uniform(-3, 3), 0], [0, np.exp(rng.uniform(-1, 1)), 0], [0, 0, 1]])
+    W = turn.apply(V @ oblique.T) + rng.normal(size=3)
+    for k in range(4):  # the labels, too, may begin anywhere
+        assert measure.nonconvex(W, np.roll(Q, k, axis=1)).tolist() == [0] * dart
 
 
 def test_corners_by_hand():
@@ -347,11 +371,11 @@ def test_corners_by_hand():
 def test_star_angles_of_a_star_in_space_by_arccos(seed):
     V = np.random.default_rng(seed).normal(size=(9, 3)) + sheared(2, 2)[0]
     chords = np.array([[7, 1], [5, 3], [6, 2], [8, 0]])  # right left, up down, the ends of d1, d2
-    for unit in (False, True):
+    for unit, options in ((False, ()), (False, (False,)), (True, (True,))):
         rays = V[chords] - V[4]
         rays /= np.linalg.norm(rays, axis=2, keepdims=True) if unit else 1
         right, up, d1, d2 = rays[:, 0] - rays[:, 1]
-        star = measure.star_angles(V, mesh.grid_quads(2, 2), unit)
+        star = measure.star_angles(V, mesh.grid_quads(2, 2), *options)
         wanted = [a @ b / np.sqrt((a @ a) * (b @ b)) for a, b in ((d1, d2), (right, up))]
         assert star.vertex.tolist() == [4]
         np.testing.assert_allclose(np.cos([star.theta[0], star.theta0[0]]), wanted, atol=1e-12)
@@ -387,3 +411,18 @@ def test_a_part_lies_on_the_whole_not_the_whole_on_the_part_and_refining_finds_t
     assert measure.hausdorff(V, Q, W, R) == pytest.approx((0, h), abs=1e-15)
     assert measure.hausdorff(V, Q, W, R, refine=3).there == pytest.approx(2 / 3 * 0.6, rel=1e-14)
     assert measure.hausdorff(V, Q, W, R, refine=4) == pytest.approx((0.6, h), rel=1e-14)
+
+
+LATTICE = [(i, j) for i in range(1, 4) for j in range(1, 5 - i)]
+
+
+@pytest.mark.parametrize("place", LATTICE)
+def test_refining_finds_the_point_below_the_top_of_a_flat_tent_wherever_that_is(place):
+    """A tent on a triangle: below its top is the farthest point, at the distance of a side."""
+    h, (x, y) = 0.01, np.array(place) / 5
+    ground, top = np.array([[0, 0, 0], [1, 0, 0], [0, 1.0, 0]]), np.array([[x, y, h]])
+    tent = np.concatenate([ground, top]), np.array([[0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    side = min(x, y, (1 - x - y) / 2**0.5)  # distance from the nearest edge of the ground
+    found = measure.hausdorff(ground, np.array([[0, 1, 2]]), *tent, refine=5)
+    assert found.there == pytest.approx(h * side / np.hypot(h, side), rel=1e-9)
+    assert measure.hausdorff(ground, np.array([[0, 1, 2]]), *tent).there < 1e-15

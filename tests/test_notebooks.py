@@ -15,7 +15,6 @@ import sys
 from pathlib import Path
 
 import matplotlib.image
-import nbformat
 import outputs  # tools/outputs.py
 import pytest
 from nbconvert import HTMLExporter
@@ -29,8 +28,14 @@ MANIFEST = publish.read_manifest(ROOT / "figures")
 NOT_PRIVATE = "_replace", "_asdict", "_fields", "_make"  # of a named tuple
 
 
+def all_cells(path):
+    import nbformat  # a second and a half, for those who need it
+
+    return nbformat.read(path, as_version=4).cells
+
+
 def cells_of(path, kind="code"):
-    return [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == kind]
+    return [c for c in all_cells(path) if c.cell_type == kind]
 
 
 @pytest.fixture(scope="module", params=NOTEBOOKS, ids=lambda path: path.stem)
@@ -130,7 +135,7 @@ def test_a_lesson_begins_with_links_to_its_neighbours(path):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_picture_has_a_caption_and_a_folded_cell_says_what_it_proves(path):
-    cells, section = nbformat.read(path, as_version=4).cells, ""
+    cells, section = all_cells(path), ""
     for cell, after in zip(cells, [*cells[1:], None], strict=True):
         if cell.cell_type == "markdown":
             section = cell.source if re.search("^#", cell.source, re.MULTILINE) else section

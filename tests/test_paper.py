@@ -3,11 +3,11 @@
 import ast
 import functools
 import inspect
+import json
 import re
 from pathlib import Path
 from typing import NamedTuple
 
-import nbformat
 import pytest
 from test_project import public
 
@@ -42,19 +42,24 @@ def rows(part=0):
     return table
 
 
+def sources(notebook, kind):
+    """The text of each cell of a kind."""
+    text = (ROOT / "notebooks" / f"{notebook}.ipynb").read_text(encoding="utf-8")
+    found = json.loads(text)["cells"]
+    return ["".join(cell["source"]) for cell in found if cell["cell_type"] == kind]
+
+
 @functools.cache
 def headings(notebook, part):
     """The headings of a notebook, or (1) the small lines below them, as one line."""
-    cells = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
-    lines = [line for c in cells if c.cell_type == "markdown" for line in c.source.splitlines()]
+    lines = "\n".join(sources(notebook, "markdown")).splitlines()
     return " ".join(line for line in lines if line.startswith("<small>" if part else "#"))
 
 
 @functools.cache
 def cells(notebook):
     """The code of a notebook, one text."""
-    found = nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4).cells
-    return "\n".join(cell.source for cell in found if cell.cell_type == "code")
+    return "\n".join(sources(notebook, "code"))
 
 
 @functools.cache

@@ -395,6 +395,9 @@ BAD_RATIOS = [
     (1, -2, r"mu = -2: both must be positive and finite"),
     (np.nan, 1, r"lam = nan, .* positive and finite"),
     (np.inf, 1, r"lam = inf, .* positive and finite"),
+    (1, np.inf, r"mu = inf: both must be positive and finite"),
+    (0, 1, r"lam = 0, mu = 1: both must be positive and finite"),
+    (1, 0, r"lam = 1, mu = 0: both must be positive and finite"),
     ([1, 2, 2], [1, 1, 9], r"lam = 2 at mu = 9 .* between 0\.8 and 1\.25 "),
     ([1, 1], [1, 1, 1], "broadcast"),
 ]
