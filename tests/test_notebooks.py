@@ -157,6 +157,8 @@ def test_a_picture_has_a_caption_and_a_folded_cell_says_what_it_proves(path):
 
 
 def test_a_picture_without_words_gets_those_of_its_caption():
+    import nbformat
+
     picture = nbformat.v4.new_output("display_data", {"image/png": "", "text/plain": "<Figure>"})
     cell = nbformat.v4.new_code_cell(outputs=[picture])
     outputs.describe(
