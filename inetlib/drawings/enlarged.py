@@ -6,7 +6,7 @@ from .. import measure, plot
 
 NAMES = "d1", "d2", "u", "v"  # the families along d1, d2, m13 and m24 of a face
 WIDE, HIGH = 1.0, 0.6  # half the room of the quad
-WORDS = 1.2  # where the words begin
+GAP = 0.2  # between the quad and the words
 
 
 def flat(V, Q, face, right=2):
@@ -23,7 +23,7 @@ def flat(V, Q, face, right=2):
     return points / np.max(np.abs(points) / [WIDE, HIGH])
 
 
-def parallelogram(ax, corners, names=NAMES, width=1.4, radii=(0.2, 0.16)):
+def parallelogram(ax, corners, names=NAMES, width=1.2, radii=(0.2, 0.16)):
     """That of a plane quad, sides and diagonals in the colours of families, and both angles.
 
     radii: of the arcs of theta and theta0, in units of the longer diagonal."""
@@ -44,24 +44,29 @@ def words(V, Q, face):
     return "\n".join(rf"${n}={x:.1f}\degree$" for n, x in zip(names, angles, strict=True))
 
 
-def draw(ax, V, Q, face, names=NAMES, size=8.5, more="", width=1.2):
+def draw(ax, V, Q, face, names=NAMES, size=8.5, reach=1.0, more=""):
     """A picture of the quad `face` with its parallelogram, and beside it its angles in words.
 
-    ax: axes of their own, see `below`; names: see `NAMES`, the family "u" points to the right;
-    size: of the words, in points; more: lines below them; width: of the lines."""
+    ax: axes of their own, see `below`; names: see `NAMES`, the family "u" points to the right, if it is
+    one of the last two;
+    size: of the words, in points; reach: their width, in half widths of the quad; more: lines
+    below them."""
+    ax.set_in_layout(False)
     ax.set_axis_off()
-    corners = flat(V, Q, face, 2 + names[2:].index("u"))
+    corners = flat(V, Q, face, 2 + names[2:].index("u") if "u" in names[2:] else 2)
     plot.polygons(ax, corners, [[0, 1, 2, 3]], "#f0f2f5", zorder=0)
     for name, pairs in zip(names[2:], ([[1, 2], [0, 3]], [[1, 0], [2, 3]]), strict=True):
-        plot.curves(ax, corners[pairs], plot.COLOURS[name], 0.6 * width)
-    parallelogram(ax, corners, names, width)
+        plot.curves(ax, corners[pairs], plot.COLOURS[name], 0.7)
+    parallelogram(ax, corners, names)
     text = words(V, Q, face) + ("\n" + more if more else "")
-    ax.text(WORDS, 0, text, va="center", size=size, linespacing=1.35)
-    ax.set(xlim=(-WIDE - 0.05, WORDS + 1), ylim=(-HIGH - 0.05, HIGH + 0.05), aspect="equal")
+    half = corners[:, 0].max()
+    ax.text(half + GAP, 0, text, va="center", size=size, linespacing=1.35)
+    middle, room = (GAP + reach) / 2, WIDE + 0.05 + (GAP + reach) / 2
+    ax.set(xlim=(middle - room, middle + room), ylim=(-HIGH - 0.05, HIGH + 0.05), aspect="equal")
 
 
 def below(ax, ratio, room=0.3):
-    """New axes in a panel for `draw`, under what it shows.
+    """Make room in a panel under what it shows; axes there, for `draw`.
 
     ratio: width over height of what the panel shows, which is made as large as can be; room: the
     height of the new axes, in its heights."""
@@ -70,4 +75,9 @@ def below(ax, ratio, room=0.3):
     x, y = (left + right) / 2, (bottom + top) / 2
     ax.set(xlim=(x - ratio * high / 2, x + ratio * high / 2))
     ax.set(ylim=(y - (0.5 + room) * high, y + high / 2))
-    return ax.inset_axes([0, 0, 1, 0.97 * room / (1 + room)])
+    return ax.inset_axes(place(room))
+
+
+def place(room):
+    """Where they are, as `inset_axes` asks, in a panel with so much room, see `below`."""
+    return [0, 0, 1, 0.97 * room / (1 + room)]
