@@ -9,7 +9,6 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import PIL.Image
 
 from . import files
 from .drawings import Drawing, deviations, rounded, same
@@ -125,12 +124,11 @@ def show(drawing: Drawing, colours: int | None = None):
             display(drawing.figure, metadata={"image/png": {"alt": drawing.words}})
             plt.close(drawing.figure)
         return None
-    fine, small = io.BytesIO(), io.BytesIO()
+    fine = io.BytesIO()
     drawing.figure.savefig(fine, format="png", dpi="figure")
     plt.close(drawing.figure)
-    picture = PIL.Image.open(fine).convert("RGB")
-    picture.quantize(colours, dither=PIL.Image.Dither.NONE).save(small, format="png", optimize=True)
-    return Image(data=small.getvalue(), format="png", alt=drawing.words)
+    small = same.few_tones(fine.getvalue(), tones=(colours,))
+    return Image(data=small, format="png", alt=drawing.words)
 
 
 def asked() -> Path | None:

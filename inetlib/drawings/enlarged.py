@@ -47,10 +47,9 @@ def words(V, Q, face):
 def draw(ax, V, Q, face, names=NAMES, size=8.5, reach=1.0, more=""):
     """A picture of the quad `face` with its parallelogram, and beside it its angles in words.
 
-    ax: axes of their own, see `below`; names: see `NAMES`, the family "u" points to the right, if it is
-    one of the last two;
-    size: of the words, in points; reach: their width, in half widths of the quad; more: lines
-    below them."""
+    ax: axes of their own, see `below`; names: see `NAMES`, "u" points to the right where it is a
+    diagonal; size: of the words, in points; reach: their width, in half widths of the quad; more:
+    lines below them."""
     ax.set_in_layout(False)
     ax.set_axis_off()
     corners = flat(V, Q, face, 2 + names[2:].index("u") if "u" in names[2:] else 2)

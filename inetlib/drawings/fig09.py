@@ -17,7 +17,8 @@ CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 62), "E": (
 CENTRES = {"A": (2.9, 0, 0.7), "B": (2, -1, 1.1), "C": (0.5, -3.6, 0.6)}  # of the inversions
 CENTRES |= {"D": (2.9, 0, 0), "E": (0, 0, 4.8)}
 IMAGE_CAMERAS = {"A": (-35, 30), "B": (-75, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
-FACES = {"A": (234, 74), "B": (236, 200), "C": (411, 97), "D": (75, 99), "E": (408, 105)}  # enlarged
+# the faces that are enlarged, in columns 1 and 2, 3 and 4
+FACES = {"A": (234, 74), "B": (236, 200), "C": (411, 97), "D": (75, 99), "E": (408, 105)}
 GOALS = {2: (80 * DEGREE, 45 * DEGREE), 4: (50 * DEGREE, 50 * DEGREE)}
 TITLES = {1: "(63.43*, 45*)", 2: "(80*, 45*)", 3: "M\u00f6bius image", 4: "(50*, 50*)"}  # * degrees
 # distances, printed for column 4 only and without saying in which unit
