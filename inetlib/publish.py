@@ -13,7 +13,8 @@ import numpy as np
 from . import files
 from .drawings import Drawing, deviations, rounded, same
 
-INSIDE = 128  # dots per inch of pictures inside an SVG
+# dots per inch of pictures inside an SVG, their part of its bytes: the first with which it is small
+INSIDE = (128, 0.3), (96, 0.18)
 DIGITS = 7  # decimals of the data that are stored
 FOLDER = "INETLIB_FIGURES"  # the variable that says where shown drawings are written, see `asked`
 
@@ -43,11 +44,13 @@ def _draw(drawing, folder, manifest):
     """Write the three files of a drawing, and the manifest with its entry."""
     svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
-    drawn = io.StringIO()
-    drawing.figure.savefig(
-        drawn, format="svg", dpi=INSIDE, metadata={"Date": None, "Creator": None}
-    )
-    svg.write_text(same.plain_svg(drawn.getvalue()), encoding="utf-8", newline="\n")
+    for dpi, part in INSIDE:
+        drawn, nothing = io.StringIO(), {"Date": None, "Creator": None}
+        drawing.figure.savefig(drawn, format="svg", dpi=dpi, metadata=nothing)
+        plain = same.plain_svg(drawn.getvalue(), part)
+        if len(plain) <= same.LARGE:
+            break
+    svg.write_text(plain, encoding="utf-8", newline="\n")
     drawing.figure.savefig(png, format="png", metadata={"Software": None})
     png.write_bytes(same.few_tones(png.read_bytes()))
     np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})

@@ -68,11 +68,11 @@ def data(one: dict, two: dict) -> list:
     return differ
 
 
-def plain_svg(svg: str) -> str:
+def plain_svg(svg: str, part: float = 0.3) -> str:
     """An SVG by matplotlib with two decimals and with numbers for the hashes in its names.
 
-    Pictures inside are `few_tones`."""
-    most = 0.3 * LARGE / max(1, len(INSIDE.findall(svg)))
+    Pictures inside are `few_tones`, together this part of a large file."""
+    most = part * LARGE / max(1, len(INSIDE.findall(svg)))
     svg = INSIDE.sub(lambda found: _inside(few_tones(base64.b64decode(found[0]), most)), svg)
     names = {}
     for match in HASHED.finditer(svg):
