@@ -17,6 +17,7 @@ COLOURS = {"u": "#0b3c8c", "v": "#d1440c", "d1": "#1f9e77", "d2": "#e0a100"}
 INK, GREY, PALE, FILL = "#1a1a1a", "#8a8a8a", "#e9edf2", "#c3d3e8"
 DARK = "#6f8fbf"  # inscribed parallelograms in space
 SINGULAR = "#7b2d8b"  # faces that are no quads
+HEAVY = 1.7  # wider curves in space have a white border
 DEGREE = float(np.pi / 180)
 
 
@@ -180,5 +181,7 @@ def scene(ax, view, layers, lines=(), pixels=1000, lift=0.003):
         look = {"facecolor": "none", "edgecolor": colour, "linewidth": width, "capstyle": "round"}
         if runs:  # as one path, for a small file
             path = Path.make_compound_path(*(Path(view(run)[0]) for run in runs))
+            if width > HEAVY:
+                look["path_effects"] = [withStroke(linewidth=width + 1.4, foreground="white")]
             ax.add_patch(PathPatch(path, zorder=2 + width / 100, joinstyle="round", **look))
     return seen

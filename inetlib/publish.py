@@ -9,12 +9,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import PIL.Image
 
 from . import files
 from .drawings import Drawing, deviations, rounded, same
 
-INSIDE = 128  # dots per inch of pictures inside an SVG
+# dots per inch of pictures inside an SVG, their part of its bytes: the first with which it is small
+INSIDE = (128, 0.3), (96, 0.18)
 DIGITS = 7  # decimals of the data that are stored
 FOLDER = "INETLIB_FIGURES"  # the variable that says where shown drawings are written, see `asked`
 
@@ -44,11 +44,13 @@ def _draw(drawing, folder, manifest):
     """Write the three files of a drawing, and the manifest with its entry."""
     svg, png, data = (folder / name for name in _names(drawing.name))
     data.parent.mkdir()
-    drawn = io.StringIO()
-    drawing.figure.savefig(
-        drawn, format="svg", dpi=INSIDE, metadata={"Date": None, "Creator": None}
-    )
-    svg.write_text(same.plain_svg(drawn.getvalue()), encoding="utf-8", newline="\n")
+    for dpi, part in INSIDE:
+        drawn, nothing = io.StringIO(), {"Date": None, "Creator": None}
+        drawing.figure.savefig(drawn, format="svg", dpi=dpi, metadata=nothing)
+        plain = same.plain_svg(drawn.getvalue(), part)
+        if len(plain) <= same.LARGE:
+            break
+    svg.write_text(plain, encoding="utf-8", newline="\n")
     drawing.figure.savefig(png, format="png", metadata={"Software": None})
     png.write_bytes(same.few_tones(png.read_bytes()))
     np.savez(data, **{name: _plain(drawing.data[name]) for name in sorted(drawing.data)})
@@ -128,12 +130,11 @@ def show(drawing: Drawing, colours: int | None = None):
             display(drawing.figure, metadata={"image/png": {"alt": drawing.words}})
             plt.close(drawing.figure)
         return None
-    fine, small = io.BytesIO(), io.BytesIO()
+    fine = io.BytesIO()
     drawing.figure.savefig(fine, format="png", dpi="figure")
     plt.close(drawing.figure)
-    picture = PIL.Image.open(fine).convert("RGB")
-    picture.quantize(colours, dither=PIL.Image.Dither.NONE).save(small, format="png", optimize=True)
-    return Image(data=small.getvalue(), format="png", alt=drawing.words)
+    small = same.few_tones(fine.getvalue(), tones=(colours,))
+    return Image(data=small, format="png", alt=drawing.words)
 
 
 def asked() -> Path | None:

@@ -170,6 +170,20 @@ def test_the_names_disagree_somewhere_exactly_on_refused_meshes():
             assert mesh.is_labelled(labelled)
 
 
+def test_a_mesh_is_refused_where_an_odd_number_of_edges_would_alternate():
+    for title, _, Q, polygon in beyond_labels.gallery().values():
+        words = beyond_labels.verdict(Q)
+        if words == "not orientable":
+            assert title == "M\u00f6bius strip"
+            continue
+        count = beyond_labels.around(Q, polygon)
+        assert (count % 2 == 0) == (words == "labelled")
+        if "quads meet" in title:
+            assert count == int(title[0]) == np.sum(Q == 0)
+        elif "cap" in title:  # its sides, and one edge from each corner
+            assert count == 2 * len(polygon)
+
+
 def test_the_jacobian_is_the_derivative():
     rng = np.random.default_rng(2)
     V, Q = surfaces.freeform_patch(3, 2)

@@ -19,6 +19,7 @@ from inetlib.drawings import (
     beyond_planar,
     beyond_rho,
     beyond_star,
+    enlarged,
     fig03,
     fig09,
     optimisation,
@@ -174,7 +175,7 @@ def test_bending_makes_no_chord_of_fig_7_longer_and_the_cylinder_closes():
         V = data[f"net_{letter}"]
         assert (np.linalg.norm(V[:, None] - V, axis=2) <= flat + 1e-6).all(), letter
         assert claims[f"stretch_{letter}"] < 1e-6
-    rolled, plane = (data[f"net_{letter}"].reshape(9, 9, 3) for letter in "EA")
+    rolled, plane = (data[f"net_{letter}"].reshape(13, 13, 3) for letter in "EA")
     assert np.abs(rolled[0] - rolled[-1]).max() < 1e-9
     assert np.linalg.norm(plane[0] - plane[-1], axis=1) == pytest.approx(2 * np.pi)
 
@@ -183,6 +184,23 @@ def test_the_plane_of_fig_10_is_seen_from_the_north_pole():
     x, y, z = drawn("fig10").data["sphere"].T
     seen = np.stack([x / (1 - z), y / (1 - z), 0 * z], axis=1)
     np.testing.assert_allclose(drawn("fig10").data["plane"], seen, atol=1e-12)
+
+
+@pytest.mark.parametrize("right", range(4))
+def test_what_is_enlarged_is_the_nets_own_parallelogram_and_fills_its_room(right):
+    V, Q = surfaces.freeform_patch(6, 6)
+    corners = enlarged.flat(V, Q, 17, right)
+    flat, whole = np.column_stack([corners, 0 * corners[:, 0]]), np.arange(4)[None]
+    for judge in (measure.ratios, measure.angles):
+        np.testing.assert_allclose(judge(flat, whole), np.array(judge(V, Q))[:, [17]], rtol=1e-12)
+    way = measure.vectors(flat, whole)[right][0]
+    assert way[0] > 0 and np.abs(way[1:]).max() < 1e-12
+    assert np.max(np.abs(corners) / [enlarged.WIDE, enlarged.HIGH]) == pytest.approx(1)
+    theta, theta0 = (np.degrees(x[17]) for x in measure.angles(V, Q))
+    assert (
+        enlarged.words(V, Q, 17)
+        == f"$\\theta={theta:.1f}\\degree$\n$\\theta_0={theta0:.1f}\\degree$"
+    )
 
 
 def test_sampled_nets_of_half_the_size_are_four_times_as_good():

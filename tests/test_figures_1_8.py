@@ -292,9 +292,10 @@ def test_fig_6_shows_rhombuses_rectangles_theta_parallelograms_and_squares():
         latitude = np.arcsin(V[:, 2])
         mercator = np.arctan2(V[:, 0], -V[:, 1]) + 1j * np.arctanh(np.sin(latitude))
         np.testing.assert_allclose(mercator, plane(domain[:, :2]), atol=1e-12)
-        one, two = (x[0] for x in inner(domain, Q))  # the parallelogram that is drawn of it
-        shape = quotient(two, one) * np.exp(1j * angle(one, two) * DEG)
-        right = [p for p in polygons if abs((p[3] - p[0]) / (p[1] - p[0]) - shape) < 1e-9]
+        one, two = inner(V, Q)  # of the net in space one parallelogram is drawn
+        shapes = quotient(two, one) * np.exp(1j * angle(one, two) * DEG)
+        off = [np.abs((p[3] - p[0]) / (p[1] - p[0]) - shapes).min() for p in polygons]
+        right = [p for p, x in zip(polygons, off, strict=True) if x < 1e-9]
         assert any(has_lines(ax, p[[1, 2]], p[[3, 2]]) for ax in axes for p in right), name
     a, b = (x[0] for x in inner(*nets["D"][:2]))
     quarter = 2**-0.5 * ((a + b) + np.cross([0, 0, -1], a + b))  # m13 turned by -45 degrees

@@ -4,12 +4,22 @@ import numpy as np
 
 from .. import examples, mesh, plot, reference, solver
 from ..plot import DEGREE
-from . import drawn, patches
+from . import drawn, enlarged, patches
 from .revolution import SLOTS
 
 SEAM = "#d0006f"
 ROWS = [[f"{letter}{k}" for k in range(6)] for letter in "ABC"]
 MOSAIC = [*ROWS, *[["D"] * 3 + ["E"] * 3] * 2]
+
+
+NAMES = "triangle", "square", "pentagon", "hexagon", "heptagon", "octagon"
+HEAD = (
+    "In a net the edges around a vertex or a polygon alternate between blue ($u$) and orange ($v$)."
+    "\nAn odd number of edges cannot: they disagree along the dotted lines."
+)
+
+FACES = {"D": 255, "E": 102}  # that are enlarged
+PLACES = {"D": [0.6, 0.03, 0.46, 0.2], "E": [0.59, 0.0, 0.45, 0.2]}
 
 
 def gallery():
@@ -20,12 +30,12 @@ def gallery():
     """
     found = {}
     for k in range(6):
-        found[f"A{k}"] = (f"{k + 3}-gon", *mesh.polygon_rings(k + 3, 2))
-        found[f"B{k}"] = (f"valence {k + 3}", *examples.vertex(k + 3, 3), None)
+        found[f"A{k}"] = (NAMES[k], *mesh.polygon_rings(k + 3, 2))
+        found[f"B{k}"] = (f"{k + 3} quads meet", *examples.vertex(k + 3, 3), None)
     for k, sides in enumerate((3, 5, 7)):
         found[f"C{k}"] = (f"cap, {sides} sides", *examples.polar_cap(sides, 3))
     for k, turns in ((3, 3), (4, 4)):
-        found[f"C{k}"] = (f"{turns} turns", *mesh.polygon_rings(turns, 1)[:2], None)
+        found[f"C{k}"] = (f"strip, {turns} turns", *mesh.polygon_rings(turns, 1)[:2], None)
     found["C5"] = ("M\u00f6bius strip", *examples.moebius_strip(26, 2), None)
     return found
 
@@ -42,6 +52,24 @@ def verdict(Q):
             return f"odd sum of\n(valence - 1): {words.split()[-1]}"
         return words.replace(" has the ", " has\nthe ").replace("the mesh is ", "").split(":")[0]
     return "labelled"
+
+
+def around(Q, polygon=None):
+    """How many edges there are on and from the polygon, or the hole of a strip, or vertex 0.
+
+    These must be an even number, where the surface has an orientation.  Paper: B9."""
+    loops = sorted(mesh.boundary_loops(Q), key=len)
+    middle = polygon if polygon is not None else loops[0] if len(loops) > 1 else [0]
+    edges = np.sort(np.stack([Q, np.roll(Q, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    return int(np.isin(np.unique(edges, axis=0), middle).any(axis=1).sum())
+
+
+def _caption(Q, polygon, words):
+    """What a reader is told of a mesh with this `verdict`."""
+    if words == "not orientable":
+        return "one side only"
+    count = around(Q, polygon)
+    return f"{count} edges alternate" if words == "labelled" else f"{count} edges disagree"
 
 
 def nets(theta=60 * DEGREE, theta0=45 * DEGREE, dome=0.5):
@@ -65,7 +93,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
     theta, theta0: radians, of the nets; azimuth, elevation: the camera, radians.  Edges have
     the colours of u and v; where a mesh is refused, the names spread from one face until they
     meet in disagreement along the dotted edges.  Paper: B9."""
-    figure, axes = plot.canvas(MOSAIC, 7.4, 7.2)
+    figure, axes = plot.canvas(MOSAIC, 7.4, 7.8)
     data, exact, claims = {}, [], {}
     for name, (title, V, Q, polygon) in gallery().items():
         words = verdict(Q)
@@ -74,14 +102,23 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE, azimuth=-70 * DEGREE, elevation=
         axes[name].set_title(heading, loc="left", fontsize=9)
         look = {"ha": "center", "va": "top", "size": 7.5, "transform": axes[name].transAxes}
         colour = plot.INK if words == "labelled" else SEAM
-        axes[name].text(0.5, -0.03, words, color=colour, **look)
+        axes[name].text(0.5, -0.03, _caption(Q, polygon, words), color=colour, **look)
         claims[f"{name} {title}"] = words.replace("\n", " ")
+    figure.get_layout_engine().set(h_pad=0.06, hspace=0.08)
+    figure.suptitle(HEAD, x=0.01, ha="left", fontsize=9)
     view = plot.camera(azimuth, elevation)
-    texts = {"D": "around an octagon", "E": "on a polar cap"}
+    texts = {"D": "a net around an octagon", "E": "a net on a polar cap"}
     for letter, (_, Q, polygon, result) in nets(theta, theta0).items():
         V = data[letter] = result.V
-        patches.surface(axes[letter], view, V, Q, polygons=[(V[polygon], plot.SINGULAR)])
-        plot.panel(axes[letter], letter, f"{texts[letter]}: ${plot.degrees(theta, theta0)}$")
+        lines, face = [patches.outline(V, Q[[FACES[letter]]])], FACES[letter]
+        singular = [(V[polygon], plot.SINGULAR)]
+        patches.surface(axes[letter], view, V, Q, lines=lines, polygons=singular)
+        if letter == "E":  # room at the right
+            left, right = axes[letter].get_xlim()
+            axes[letter].set_xlim(left, right + 0.3 * (right - left))
+        axes[letter].set_anchor("N")
+        enlarged.draw(axes[letter].inset_axes(PLACES[letter]), V, Q, face)
+        plot.panel(axes[letter], letter, texts[letter])
         exact.append((V, Q, result.theta, result.theta0))
         claims |= patches.claims(letter, result, Q)
     return figure, data, exact, claims

@@ -126,7 +126,7 @@ def _faces(ax, view, V, Q):
     fill[middle] = to_rgb(plot.FILL)
     lines = plot.families(V, Q, dict.fromkeys(COLOURS, 1.1))
     apart = np.arange(Q.size).reshape(-1, 4)
-    plot.scene(ax, view, [(V[Q].reshape(-1, 3), apart, fill)], lines)
+    plot.scene(ax, view, [(V[Q].reshape(-1, 3), apart, fill)], lines, lift=0.03)
     corners = view(V[Q[middle]])[0]
     ax.plot(*corners.T, "o", color=plot.INK, ms=3, zorder=6)
     for k, turn in enumerate((1, 1, np.exp(-1.2j), np.exp(1.2j))):  # beside the ends of d1, d2

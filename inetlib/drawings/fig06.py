@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from .. import conformal, parallelogram, plot
+from .. import conformal, measure, parallelogram, plot
 from ..plot import DEGREE
-from . import drawn, sampled
+from . import drawn, enlarged, patches, sampled
 
 RIGHT = 90 * DEGREE
 TITLES = {"A": r"$\lambda=1$", "B": r"$\mu=1$", "C": r"$\lambda=\mu$", "D": r"$\lambda=\mu=1$"}
@@ -26,8 +26,10 @@ def draw(angle=60 * DEGREE, cells=10, size=1.5, azimuth=-90 * DEGREE, elevation=
         z = _domain(target, cells, size)
         domain, Q = conformal.quads(z)
         V = _sphere(z)
-        plot.board(axes[name], view, V, Q, plot.families(V, Q, {"u": 0.6, "v": 0.6}))
-        _parallelogram(axes[name.lower()], parallelogram.rho(lam, mu), target)
+        face = np.ravel_multi_index(np.array(z.shape) // 2, np.array(z.shape) - 1)  # in the middle
+        lines = [*plot.families(V, Q, {"u": 0.6, "v": 0.6}), patches.outline(V, Q[[face]])]
+        plot.board(axes[name], view, V, Q, lines)
+        _parallelogram(axes[name.lower()], V, Q, face)
         plot.panel(axes[name], name, TITLES[name])
         plot.text(axes[name.lower()], -0.6j, SHAPES[name], zorder=3, va="top")
         nets.append((domain, Q, *target))
@@ -35,9 +37,9 @@ def draw(angle=60 * DEGREE, cells=10, size=1.5, azimuth=-90 * DEGREE, elevation=
         claims |= {f"lam_{name}": lam, f"mu_{name}": mu}
         claims |= sampled(f"sampled_net_{name}", V, Q, target)
     flat = view(np.concatenate([data[f"net_{name}"] for name in asked]))[0]
+    ends = 1.03 * np.array([flat.min(axis=0), flat.max(axis=0)])
     for name in asked:
-        axes[name].update_datalim([flat.min(axis=0), flat.max(axis=0)])
-        axes[name].autoscale_view()
+        axes[name].set(xlim=ends[:, 0], ylim=ends[:, 1])
     return figure, data, nets, claims
 
 
@@ -55,20 +57,17 @@ def _sphere(z):
     return np.stack([np.sin(x) / np.cosh(y), -np.cos(x) / np.cosh(y), np.tanh(y)], axis=1)
 
 
-def _parallelogram(ax, rho, angles):
-    """Diagonals X_u and X_v = rho X_u, sides Y_u / 2 and Y_v / 2, and both angles."""
-    corners = np.array([-1, -rho, 1, rho]) / (2 * max(1, abs(rho)))
-    left, low, right, top = plot.plane(corners)
-    colours, centre = plot.COLOURS, np.zeros(2)
-    plot.polygons(ax, corners, [[0, 1, 2, 3]], plot.FILL, zorder=0)
-    plot.curves(ax, [[low, right]], colours["d2"], 1.2)
-    plot.curves(ax, [[top, right]], colours["d1"], 1.2)
+def _parallelogram(ax, V, Q, face):
+    """That of a face: its diagonals, its sides, and both angles as measured, to a degree."""
+    corners, colours, centre = enlarged.flat(V, Q, face), plot.COLOURS, np.zeros(2)
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2
+    corners = (corners - middles.mean(axis=0)) / np.ptp(middles, axis=0).max()
+    enlarged.parallelogram(ax, corners, radii=(0.13, 0.1))
+    left, low, right, top = (corners + np.roll(corners, -1, axis=0)) / 2
     ends = {"d1": (left, low), "d2": (left, top), "u": (left, right), "v": (low, top)}
     for name, pair in ends.items():
         plot.vector(ax, *pair, colours[name])
-    plot.angle(ax, left, low - left, top - left, 0.13)
-    plot.angle(ax, centre, right, top, 0.1)
-    theta, theta0 = (f"${plot.degrees(angle)}$" for angle in angles)
+    theta, theta0 = (f"${np.degrees(x[face]):.0f}\\degree$" for x in measure.angles(V, Q))
     for start, distance, a, b, text in (
         (left, 0.28, low - left, right, theta),
         (centre, 0.18, right, top, theta0),

@@ -4,22 +4,23 @@ import numpy as np
 
 from .. import conformal, developable, mesh, plot
 from ..plot import DEGREE
-from . import drawn, sampled
+from . import drawn, enlarged, patches, sampled
 
-WIDTHS = {"A": 19, "B": 15, "C": 9}, {"D": 6, "E": 5, "F": 9, "G": 12, "H": 11}
+WIDTHS = {"A": 20, "B": 16, "C": 12}, {"D": 7, "E": 7, "F": 10, "G": 13, "H": 11}
 PANELS = [[name for name, count in row.items() for _ in range(count)] for row in WIDTHS]
-HIGH = 8.2  # columns are as wide as a panel is high
+HIGH, ROOM = 8.4, 0.33  # columns as wide as a net is high; the height below it, in heights
 GEODESIC = ((0, 0, 0), (0.3, -0.8, 0.1), (0.6, -0.8, 0.3), (0.9, 0, 0.4))
 EDITED = ((0, 0, 0), (0.1, -1, -0.1), (0.8, -1, 0.6), (0.9, 0, 0.4))
+FACE = 74  # that is enlarged
 TITLES = {"A": "$k=0$: sheared grid in the plane", "B": "$k=1/4$", "C": "$k=1/2$", "D": "$k=3/4$"}
-TITLES |= {"E": "$k=1$", "F": "rotational cone", "G": "B\u00e9zier geodesic", "H": "moved points"}
+TITLES |= {"E": "$k=1$", "F": "a cone", "G": "B\u00e9zier geodesic", "H": "moved points"}
 
 
 @drawn("theta", "theta0", "azimuth", "elevation")
 def draw(
     theta=60 * DEGREE,
     theta0=45 * DEGREE,
-    cells=8,
+    cells=12,
     azimuth=-90 * DEGREE,
     elevation=20 * DEGREE,
     geodesic=GEODESIC,
@@ -37,7 +38,7 @@ def draw(
     controls = {}
     for name, points in (("G", geodesic), ("H", edited)):
         maps[name], controls[name] = _along(z, points)
-    figure, axes = plot.canvas(PANELS, 7.6, 3.6)
+    figure, axes = plot.canvas(PANELS, 7.6, 4.2)
     view = plot.camera(azimuth, elevation)
     domain, Q = conformal.quads(z)
     data, claims = {"domain": domain}, {}
@@ -52,6 +53,9 @@ def draw(
         axes[name].plot(*flat.T, "o--", color=plot.INK, ms=3.5, lw=0.8, zorder=6)
         axes[name].update_datalim(flat)
     _same_scale(axes)
+    for name, ax in axes.items():
+        place = ax.inset_axes(enlarged.place(ROOM))
+        enlarged.draw(place, data[f"net_{name}"], Q, FACE, size=7.5, reach=1.4)
     return figure, data, [(domain, Q, theta, theta0)], claims
 
 
@@ -93,11 +97,12 @@ def _sheet(ax, view, bend, z):
     black = mesh.checkerboard(V, Q)
     quads = bend(black.V[:, 0] + 1j * black.V[:, 1])[black.black].reshape(-1, 3)
     lines = [
-        (bend(line), plot.COLOURS[name], 0.7)
+        (bend(line), plot.COLOURS[name], 0.5)
         for name, family in (("u", _finer(z).T), ("v", _finer(z.T).T))
         for line in family
     ]
-    lines.append((bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z))), plot.INK, 2.2))
+    lines.append(patches.outline(bend(z).reshape(-1, 3), Q[[FACE]], width=1.1))
+    lines.append((bend(np.linspace(z[0, 0], z[-1, -1], 4 * len(z))), plot.INK, 2))
     surface = bend(fine[:, 0] + 1j * fine[:, 1]), F, plot.PALE
     apart = np.arange(len(quads)).reshape(-1, 4)
     plot.scene(ax, view, [surface, (quads, apart, plot.DARK)], lines, pixels=700)
@@ -111,12 +116,14 @@ def _finer(z, parts=6):
 
 
 def _same_scale(axes):
-    """All panels of the same scale: they are equally high, and so are their limits."""
+    """All panels of the same scale: they are equally high, and so are their limits.
+
+    Below the nets is room for their parallelograms."""
     columns = WIDTHS[0] | WIDTHS[1]
     sizes = [(ax.dataLim.height, ax.dataLim.width * HIGH / columns[k]) for k, ax in axes.items()]
-    height = 1.1 * np.max(sizes)
+    height = 1.07 * np.max(sizes)
     for ax in axes.values():
         ax.set_aspect("equal", adjustable="datalim")
         x, y = (ax.dataLim.p0 + ax.dataLim.p1) / 2
         ax.set_xlim(x - 0.1, x + 0.1, auto=True)  # to be widened to the panel
-        ax.set_ylim(y - height / 2, y + height / 2, auto=True)
+        ax.set_ylim(y - (0.5 + ROOM) * height, y + height / 2, auto=True)

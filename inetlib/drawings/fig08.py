@@ -4,7 +4,9 @@ import numpy as np
 
 from .. import conformal, parallelogram, plot, surfaces
 from ..plot import DEGREE
-from . import drawn, isothermal, sampled
+from . import drawn, enlarged, isothermal, patches, sampled
+
+FACE = 411  # of the net, enlarged
 
 
 @drawn("azimuth", "elevation")
@@ -13,14 +15,15 @@ def draw(around=36, rows=14, azimuth=-80 * DEGREE, elevation=22 * DEGREE):
 
     around: squares of a full turn of the catenoid; rows: of squares; azimuth, elevation: the
     camera, radians.  Paper: Fig. 8."""
-    figure, axes = plot.canvas([["A", "B"]], 7.2, 3.3, ratios=[1, 1.1])
+    figure, axes = plot.canvas([["A", "B"]], 7.2, 3.9, ratios=[1, 1.1])
     _squares(axes["A"])
     step = 2 * np.pi / around
     z = isothermal.domain(rows, around, step, 1j * step * rows / 2)
     V, Q = isothermal.sample(surfaces.CATENOID, z)
     squares = [(points, plot.GREY, 0.3) for points, _, _ in plot.families(V, Q, {"d1": 0})]
-    lines = [*squares, *isothermal.lines(V, Q, 0.7)]
+    lines = [*squares, *isothermal.lines(V, Q, 0.7), patches.outline(V, Q[[FACE]])]
     plot.board(axes["B"], plot.camera(azimuth, elevation), V, Q, lines)
+    enlarged.draw(enlarged.below(axes["B"], 1, 0.22), V, Q, FACE, isothermal.FAMILIES, 10)
     titles = {"A": "in two squares of the $(u, v)$ plane", "B": "on a catenoid"}
     for name, ax in axes.items():
         ax.set_anchor("N")

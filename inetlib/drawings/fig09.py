@@ -7,16 +7,18 @@ import numpy as np
 from .. import conformal, measure, mesh, moebius, plot, reference, solver, surfaces
 from ..plot import DEGREE
 from ..solver.problem import Weights
-from . import darts, drawn, isothermal, sampled
+from . import darts, drawn, enlarged, isothermal, patches, sampled
 
 NAMES = {"A": "cylinder", "B": "sphere", "C": "catenoid", "D": "helicoid", "E": "conjugate"}
 ROWS, COLUMNS, TOP = 14, 36, 7  # of each net; its upper edge v, in steps
 LEFT = {"A": 0, "B": 0, "C": 0, "D": -25, "E": -25}  # its left corner u, in steps
 MARKED = {"A": 23, "B": 23, "C": 23, "D": 18, "E": 18}  # the line that is highlighted
-CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 45), "E": (-15, 28)}  # degrees
+CAMERAS = {"A": (-90, 18), "B": (-90, 18), "C": (-90, 25), "D": (15, 62), "E": (-15, 28)}  # degrees
 CENTRES = {"A": (2.9, 0, 0.7), "B": (2, -1, 1.1), "C": (0.5, -3.6, 0.6)}  # of the inversions
 CENTRES |= {"D": (2.9, 0, 0), "E": (0, 0, 4.8)}
 IMAGE_CAMERAS = {"A": (-35, 30), "B": (-75, 50), "C": (-45, 30), "D": (0, 20), "E": (-45, 50)}
+# the faces that are enlarged, in columns 1 and 2, 3 and 4
+FACES = {"A": (234, 74), "B": (236, 200), "C": (411, 97), "D": (75, 99), "E": (408, 105)}
 GOALS = {2: (80 * DEGREE, 45 * DEGREE), 4: (50 * DEGREE, 50 * DEGREE)}
 TITLES = {1: "(63.43*, 45*)", 2: "(80*, 45*)", 3: "M\u00f6bius image", 4: "(50*, 50*)"}  # * degrees
 # distances, printed for column 4 only and without saying in which unit
@@ -34,9 +36,7 @@ def draw(around=36, t=45 * DEGREE):
     under inversions, optimised to (50, 50), both on their surfaces.  In each picture one
     u-curve, in column 1 a loxodrome, is highlighted.  Paper: Fig. 9."""
     panels = [[f"{letter}{column}" for column in TITLES] for letter in NAMES]
-    figure, axes = plot.canvas(panels, 7.2, 9.2)
-    for ax in axes.values():
-        ax.set_aspect("equal", adjustable="datalim")  # titles in one line
+    figure, axes = plot.canvas(panels, 7.2, 10.4)
     data, nets, claims = {}, [], {}
     for panel, (surface, z) in _starts(around, t).items():
         V, Q = isothermal.sample(surface, z)
@@ -138,10 +138,14 @@ def _starts(around, t):
 
 
 def _panel(ax, panel, V, Q, curve):
+    """A net with its highlighted curve, and below it the parallelogram that is marked."""
     letter, column = panel[0], int(panel[1])
     view = plot.camera(*np.radians((CAMERAS if column < 3 else IMAGE_CAMERAS)[letter]))
+    face = FACES[letter][column > 2]
     lines = [*isothermal.lines(V, Q, 0.35), (curve, isothermal.SLANTED, 2)]
+    lines.append(patches.outline(V, Q[[face]], width=0.9))
     plot.board(ax, view, V, Q, lines, pixels=480)
+    enlarged.draw(enlarged.below(ax, 1.2), V, Q, face, isothermal.FAMILIES, 8)
     plot.panel(ax, f"{letter}_{column}", NAMES[letter] if column == 1 else "")
     if letter == "A":
         title = TITLES[column].replace("*", "\N{DEGREE SIGN}")

@@ -4,9 +4,11 @@ import numpy as np
 
 from .. import conformal, mesh, moebius, plot, surfaces
 from ..plot import DEGREE
-from . import drawn, isothermal, sampled
+from . import drawn, enlarged, isothermal, patches, sampled
 
 RAYS = 0, 0.5, 1  # along the highlighted curve, where its image is outside
+WIDTHS = {"A": 2.0, "A'": 1.03}  # of the panels, for their height
+FACE = 60  # of both nets, enlarged
 CIRCLE = np.exp(2j * np.pi * np.arange(181) / 180)
 
 
@@ -16,7 +18,7 @@ def draw(around=36, rows=12, top=4, azimuth=-90 * DEGREE, elevation=14 * DEGREE)
 
     around: steps of a full turn; rows: of the net; top: its uppermost parallel, in steps
     above the equator; azimuth, elevation: the camera, radians.  Paper: Fig. 10."""
-    figure, axes = plot.canvas([["A", "A'"]], 7.4, 3.4, ratios=[1.35, 1])
+    figure, axes = plot.canvas([["A", "A'"]], 7.4, 3.5, ratios=[*WIDTHS.values()])
     step = 2 * np.pi / around
     z = isothermal.domain(rows, around, step, 1j * top * step)
     V, Q = isothermal.sample(surfaces.SPHERE, z)
@@ -28,8 +30,11 @@ def draw(around=36, rows=12, top=4, azimuth=-90 * DEGREE, elevation=14 * DEGREE)
     _sphere(axes["A"], view, V, W, Q, (curve, flat_curve))
     _plane(axes["A'"], W, Q, flat_curve)
     plot.panel(axes["A"], "A", "on the unit sphere")
-    plot.panel(axes["A'"], "A'", "in the plane (dashed: the equator)")
+    plot.panel(axes["A'"], "A'", "in the plane, with the equator")
     data, claims = {"sphere": V, "plane": W}, {}
+    for (name, wide), points in zip(WIDTHS.items(), data.values(), strict=True):
+        place = enlarged.below(axes[name], wide, 0.2)
+        enlarged.draw(place, points, Q, FACE, isothermal.FAMILIES, 9)
     for name, points in data.items():
         claims |= sampled(f"sampled_net_{name}", points, Q, isothermal.ANGLES)
     return figure, data, [(*conformal.quads(z), *isothermal.ANGLES)], claims
@@ -48,6 +53,7 @@ def _sphere(ax, view, V, W, Q, curves):
         layers.append((corners, np.arange(len(corners)).reshape(-1, 4), plot.DARK))
         lines += isothermal.lines(points, faces, 0.35)
     lines += [(curve, isothermal.SLANTED, 1.8) for curve in curves]
+    lines += [patches.outline(points, Q[[FACE]], width=1.2) for points in (V, W)]
     start = np.flatnonzero(np.linalg.norm(curves[1], axis=1) > 1.05)[[0, -1]]
     for k in RAYS:
         k = int(start[0] + k * (start[1] - start[0]))
@@ -68,4 +74,5 @@ def _plane(ax, V, Q, curve):
     for line, colour, width in isothermal.lines(V, Q, 0.4):
         plot.curves(ax, [line], colour, width)
     plot.curves(ax, [curve], isothermal.SLANTED, 1.8, zorder=4)
+    plot.polygons(ax, V, Q[[FACE]], "none", plot.INK, 1.2, zorder=5)
     plot.curves(ax, [CIRCLE], plot.INK, 0.9, (0, (4, 3)), zorder=5)

@@ -5,10 +5,12 @@ from matplotlib.colors import to_rgb
 
 from .. import loxodrome, measure, parallelogram, plot, surfaces
 from ..plot import COLOURS, DEGREE
-from . import drawn, revolution, sampled
+from . import drawn, enlarged, patches, revolution, sampled
 
 STRIP, HALO = "#9db9de", 2.2
 TITLES = {"A": "a strip", "B": "the DI-net", "C": "the 4-web", "D": "along $d_1$, $d_2$"}
+BOX = [-0.02, 0.1, 1.04, 0.9]  # of the parallelograms in their panels
+FACE, OTHER = 12, 28  # of the nets B and D
 ANGLES, VIEW = (75 * DEGREE, 60 * DEGREE), (54 * DEGREE, 24 * DEGREE)
 
 
@@ -36,21 +38,24 @@ def draw(
     figure.get_layout_engine().set(h_pad=0.08)
     view = plot.camera(azimuth, elevation)
     _strip(axes["A"], view, strip)
-    revolution.black_quads(axes["B"], view, net, 0.3)
+    lines = plot.families(net.V, net.Q, {"u": 0.3, "v": 0.3})
+    lines.append(patches.outline(net.V, net.Q[[FACE]], width=1.1))
+    plot.board(axes["B"], view, net.V, net.Q, lines)
     revolution.web(axes["C"], view, net, width=0.45)
     lines = plot.families(V, Q, {"u": 0.4, "v": 0.4})
     colours = {COLOURS["u"]: COLOURS["d1"], COLOURS["v"]: COLOURS["d2"]}
-    plot.board(axes["D"], view, net.V, Q, [(p, colours[c], w) for p, c, w in lines])
-    corners = _flat(net.V[net.Q[0]])
-    _quad(axes["a"], corners)
-    _inside(axes["b"], corners, theta, theta0)
+    lines = [(p, colours[c], w) for p, c, w in lines]
+    lines.append(patches.outline(net.V, Q[[OTHER]], width=1.1))
+    plot.board(axes["D"], view, net.V, Q, lines)
+    _quad(axes["a"], 0.72 * enlarged.flat(net.V, net.Q, 0))
     _directions(axes["c"], theta, theta0)
     other = [float(x.mean()) for x in measure.angles(V, Q)]
-    _inside(axes["d"], _flat(V[Q[0]]), *other, ("u", "v", "d1", "d2"))
     for name, text in TITLES.items():
         plot.panel(axes[name], name, text)
         axes[name].set_anchor("S")
         axes[name.lower()].set(xlim=(-0.95, 1.05), ylim=(-0.8, 0.75))
+    enlarged.draw(axes["b"].inset_axes(BOX), net.V, net.Q, FACE)
+    enlarged.draw(axes["d"].inset_axes(BOX), V, Q, OTHER, ("u", "v", "d1", "d2"))
     lam, mu = (float(x[0]) for x in measure.ratios(net.V, net.Q))
     quality = measure.quality(net.V, net.Q)
     claims = {"rows": int(net.rows), "lam": lam, "mu": mu}
@@ -82,15 +87,6 @@ def _between(a, b):
     return a / np.linalg.norm(a) + b / np.linalg.norm(b)
 
 
-def _flat(corners):
-    """Corners (4, 3) of a quad in the plane of its parallelogram, u to the right, as (4, 2)."""
-    d1, d2 = corners[2] - corners[0], corners[3] - corners[1]
-    normal, right = np.cross(d1, d2), d1 + d2
-    normal, right = normal / np.linalg.norm(normal), right / np.linalg.norm(right)
-    flat = (corners - corners.mean(axis=0)) @ np.stack([right, np.cross(normal, right)], axis=1)
-    return flat * 0.72 / np.abs(flat).max()
-
-
 def _quad(ax, corners):
     """The quad A B D C with its diagonals: the lengths of lam in Eq. (16)."""
     plot.polygons(ax, corners, [[0, 1, 2, 3]], STRIP, zorder=0)
@@ -101,24 +97,6 @@ def _quad(ax, corners):
         place = point + 0.12 * point / np.linalg.norm(point)
         plot.text(ax, place, name, halo=HALO, colour=plot.INK, zorder=7)
     plot.text(ax, -0.72j, r"$\lambda = |AD|\,/\,|BC|$", zorder=3)
-
-
-def _inside(ax, corners, theta, theta0, names=("d1", "d2", "u", "v")):
-    """Its parallelogram: the angle theta between the sides, theta0 between the diagonals.
-
-    names: the families along its sides and its diagonals."""
-    middles = (corners + np.roll(corners, -1, axis=0)) / 2
-    left, low, right, top = 0.6 * middles / np.linalg.norm(middles, axis=1).max()
-    plot.polygons(ax, [left, low, right, top], [[0, 1, 2, 3]], plot.DARK, zorder=0)
-    lines = [[left, low], [right, top]], [[left, top], [low, right]], [[left, right]], [[low, top]]
-    for name, pair in zip(names, lines, strict=True):
-        plot.curves(ax, pair, COLOURS[name], 2)
-    plot.angle(ax, left, low - left, top - left, 0.2)
-    plot.angle(ax, np.zeros(2), right, top, 0.16)
-    one, two = (rf"${np.degrees(angle):.3g}\degree$" for angle in (theta, theta0))
-    plot.text(ax, left - np.array([0.05, 0]), one, zorder=3, ha="right")
-    plot.text(ax, 0.18 * _between(right, top), two, halo=HALO, zorder=3)
-    plot.text(ax, -0.72j, r"sides: $\theta$, diagonals: $\theta_0$", zorder=3)
 
 
 def _directions(ax, theta, theta0):

@@ -5,14 +5,15 @@ from matplotlib.colors import Normalize
 
 from .. import mesh, moebius, plot, reference, solver
 from ..plot import DEGREE
-from . import darts, drawn, patches
+from . import darts, drawn, enlarged, patches
 
 SIXTY = 60 * DEGREE
 SETTINGS = {"A": {"theta": SIXTY, "theta0": SIXTY}, "B": {"theta": SIXTY, "theta0": 45 * DEGREE}}
 ITERATIONS = 12  # of the paper's formulation
 SIDES, RINGS = 6, 8
 CENTRE, RADIUS = (-0.2, 0.1, -0.25), 0.3
-MARKED = 425  # the vertex whose four faces are enlarged
+PLACE = [0.36, 0, 0.62, 0.24]  # of a parallelogram in its panel
+FACE = 377  # that is enlarged
 
 
 def start(dome=0.45, wave=0.1):
@@ -53,14 +54,13 @@ def draw(dome=0.45, wave=0.1, azimuth=-75 * DEGREE, elevation=50 * DEGREE):
     images = {letter: moebius.apply(inversion, r.V) for letter, r in found.items()}
     off = {k: patches.deviation(W, Q, found[k].theta, found[k].theta0) for k, W in images.items()}
     scale = Normalize(0, patches.next_multiple(max(x.max() for x in off.values()), 0.1))
-    four = np.flatnonzero((Q == MARKED).any(axis=1))
     _net(axes["start"], view, V, Q, polygon)
     axes["start"].set_title(f"the start: {len(Q)} quads, 1 hexagon", loc="left")
     claims = {}
     for letter, result in found.items():
         image, colours = axes[letter + "'"], patches.tints(scale, off[letter])
-        _net(axes[letter], view, result.V, Q, polygon, more=[patches.outline(result.V, Q[four])])
-        patches.enlarged(axes[letter], [0.5, 0, 0.5, 0.27], result.V, Q, four)
+        _net(axes[letter], view, result.V, Q, polygon, more=[patches.outline(result.V, Q[[FACE]])])
+        enlarged.draw(axes[letter].inset_axes(PLACE), result.V, Q, FACE)
         plot.panel(axes[letter], letter, f"${plot.degrees(**SETTINGS[letter])}$")
         _net(image, view, images[letter], Q, polygon, colours)
         plot.panel(image, letter + "'", f"M\u00f6bius image of {letter}")

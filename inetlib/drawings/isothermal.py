@@ -9,6 +9,7 @@ from .. import conformal, plot
 
 ANGLES = np.arccos(1 / np.sqrt(5)), np.pi / 4
 # Parallels are drawn alike in all figures; here they are v-curves.
+FAMILIES = "d1", "d2", "v", "u"  # whose colours its families have
 PARALLEL, SLANTED = plot.COLOURS["u"], plot.COLOURS["v"]
 
 

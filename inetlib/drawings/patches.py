@@ -49,28 +49,6 @@ def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=()):
     plot.board(ax, view, V, Q, lines, more, colours)
 
 
-def enlarged(ax, box, V, Q, faces, colours=EXACT):
-    """A picture inside a panel: some faces with their 4-web in their mean plane.
-
-    box: of `inset_axes`; faces: numbers; colours: one, or RGB for each of them."""
-    ax, Q = ax.inset_axes(box), Q[faces]
-    ax.set_axis_off()
-    ax.set_aspect("equal")
-    d1, d2, m13, _ = measure.vectors(V, Q)
-    normal, right = (x.mean(axis=0) for x in (np.cross(d1, d2), m13))
-    up = np.cross(normal, right)
-    plane = np.stack([np.cross(up, normal), up])
-    plane /= np.linalg.norm(plane, axis=1, keepdims=True)
-    board = mesh.checkerboard(V, Q)
-    flat, quads = V @ plane.T, board.V @ plane.T
-    plot.polygons(ax, flat, Q, "#f0f2f5")
-    plot.polygons(ax, quads, board.black, colours, plot.INK, 0.5)
-    ends = {"d1": [(0, 2)], "d2": [(1, 3)], "u": [(1, 2), (0, 3)], "v": [(0, 1), (3, 2)]}
-    for name, pairs in ends.items():
-        lines = np.concatenate([flat[Q[:, pair]] for pair in pairs])
-        plot.curves(ax, lines, plot.COLOURS[name], 1.3)
-
-
 def outline(V, quads, colour=plot.INK, width=1.3):
     """The boundary of some faces as a line for `plot.scene`."""
     rim = V[mesh.boundary_loops(quads)[0]]

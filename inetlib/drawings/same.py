@@ -68,11 +68,11 @@ def data(one: dict, two: dict) -> list:
     return differ
 
 
-def plain_svg(svg: str) -> str:
+def plain_svg(svg: str, part: float = 0.3) -> str:
     """An SVG by matplotlib with two decimals and with numbers for the hashes in its names.
 
-    Pictures inside are `few_tones`."""
-    most = 0.3 * LARGE / max(1, len(INSIDE.findall(svg)))
+    Pictures inside are `few_tones`, together this part of a large file."""
+    most = part * LARGE / max(1, len(INSIDE.findall(svg)))
     svg = INSIDE.sub(lambda found: _inside(few_tones(base64.b64decode(found[0]), most)), svg)
     names = {}
     for match in HASHED.finditer(svg):
@@ -86,14 +86,19 @@ def _inside(png):
     return base64.b64encode(png).decode()
 
 
-def few_tones(png: bytes, most: int = LARGE) -> bytes:
-    """The picture on white paper, with so few colours that its file has `most` bytes, if it can."""
-    image = PIL.Image.open(io.BytesIO(png)).convert("RGBA")
+def few_tones(picture, most: int = LARGE, tones: tuple = TONES) -> bytes:
+    """A picture on white paper with few colours, the bytes of a PNG.
+
+    picture: those of a PNG, or an array as of PIL; tones: numbers of colours, the first is taken
+    with which the file has `most` bytes, or else the last."""
+    array = isinstance(picture, np.ndarray)
+    image = PIL.Image.fromarray(picture) if array else PIL.Image.open(io.BytesIO(picture))
+    image = image.convert("RGBA")
     paper = PIL.Image.new("RGBA", image.size, "white")
     image = PIL.Image.alpha_composite(paper, image).convert("RGB")
-    for tones in TONES:
+    for count in tones:
         out, method = io.BytesIO(), PIL.Image.Quantize.MEDIANCUT
-        few = image.quantize(tones, method, dither=PIL.Image.Dither.NONE)
+        few = image.quantize(count, method, dither=PIL.Image.Dither.NONE)
         few.save(out, "png", optimize=True)
         if out.tell() <= most:
             break

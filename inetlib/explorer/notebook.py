@@ -2,7 +2,6 @@
 
 import asyncio
 import base64
-import io
 import os
 import secrets
 import sys
@@ -10,10 +9,10 @@ import threading
 from typing import Any, NamedTuple
 
 import numpy as np
-import PIL.Image
 
 from .. import mesh
 from .. import view as shaded
+from ..drawings import same
 from . import choices
 from .session import Session
 
@@ -79,7 +78,8 @@ def turn(
         return shaded.scene(V, Q, families, colours, width, view, live=True).show()
     picture = None
     if not live or shaded.available()[0]:  # the page needs no OpenGL
-        picture = _png(shaded.picture(shaded.scene(V, Q, families, colours, width, view)))
+        scene = shaded.scene(V, Q, families, colours, width, view)
+        picture = same.few_tones(shaded.picture(scene), tones=(192,))
     if not live:
         return _still(picture)
     session, door, key = Session(net=(V, Q)), _open_door(), secrets.token_hex(8)
@@ -104,14 +104,6 @@ def in_the_round(V: np.ndarray, Q: np.ndarray, view: tuple = (-0.9, 0.35)) -> An
 def _change(session, **values):
     if problems := session.change(**values):
         raise ValueError("; ".join(problems))
-
-
-def _png(image):
-    """The bytes of a small file with an RGB picture."""
-    file = io.BytesIO()
-    small = PIL.Image.fromarray(image).quantize(192, dither=PIL.Image.Dither.NONE)
-    small.save(file, format="png", optimize=True)
-    return file.getvalue()
 
 
 def _still(picture, width=None):
