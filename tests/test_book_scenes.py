@@ -15,7 +15,7 @@ from browsing import image, is_drawn
 
 from inetlib import measure, parallelogram
 
-pytestmark = pytest.mark.browser
+pytestmark = pytest.mark.book
 BOOK = Path(__file__).resolve().parent.parent / "book"
 sys.path.insert(0, str(BOOK))
 import scenes  # noqa: E402

@@ -13,6 +13,7 @@ import pytest
 from inetlib import measure, mesh, plot
 from inetlib.drawings import patches
 
+pytestmark = pytest.mark.book
 BOOK = Path(__file__).resolve().parent.parent / "book"
 sys.path.insert(0, str(BOOK))
 import scenes  # noqa: E402
