@@ -49,6 +49,7 @@ class Raised(NamedTuple):
     error: BaseException
 
 
+@np.errstate(all="ignore")
 def judge(exercise: Exercise, answer: object) -> Checked:
     """Judge an answer, silently."""
     if answer is None:
@@ -73,10 +74,10 @@ def judge(exercise: Exercise, answer: object) -> Checked:
     return Checked(False, "not yet: " + " ".join(words))
 
 
-def told(value: object) -> str:
-    """A value in a few words."""
+def told(value: object, digits: int = 6) -> str:
+    """A value in a few words, numbers of an array with four digits."""
     if callable(value) and not hasattr(value, "free_symbols"):
-        return getattr(value, "__name__", "a function")
+        return getattr(value, "__name__", "a function").replace("<lambda>", "a function")
     array = numbers(value)
     if array is None or isinstance(value, TRUTHS):
         words = str(value)
@@ -84,8 +85,8 @@ def told(value: object) -> str:
     if array.size > 12:
         return f"an array of shape {array.shape}"
     if array.ndim:
-        return "(" + ", ".join(told(x) for x in array) + ")"
-    return f"{array:.6g}" if array.imag else f"{array.real:.6g}"
+        return "(" + ", ".join(told(x, 4) for x in array) + ")"
+    return f"{array if array.imag else array.real:.{digits}g}"
 
 
 def numbers(value: object) -> np.ndarray | None:
@@ -104,7 +105,7 @@ def alike(one: object, two: object, tolerance: float) -> bool:
         return isinstance(one, TRUTHS) and isinstance(two, TRUTHS) and bool(one == two)
     a, b = numbers(one), numbers(two)
     if a is None or b is None or a.shape != b.shape:
-        return False
+        return a is b and bool(np.all(one == two))
     return bool(np.allclose(a, b, rtol=tolerance, atol=min(tolerance, 1e-12)))
 
 
