@@ -120,7 +120,7 @@ def _misfit(exercise, answer):
     if exercise.kind == "expression":
         if not symbolic and (numbers(answer) is None or np.ndim(answer)):
             return f"a sympy expression in {names} is wanted, not {told(answer)}."
-        free = {str(s) for s in getattr(answer, "free_symbols", ())} - {*_arguments(exercise)}
+        free = {_spelt(s) for s in getattr(answer, "free_symbols", ())} - {*_arguments(exercise)}
         return f"{sorted(free)[0]} must not be in it, only {names}." if free else ""
     return ""
 
@@ -132,12 +132,17 @@ def _arguments(exercise):
     return found if decides is exercise.truth else found[1:]
 
 
+def _spelt(symbol):
+    """The name of a symbol: lambda is a word of Python."""
+    return str(symbol).replace("lambda", "lam")
+
+
 def _function(exercise, expression):
     """A sympy expression as a function of its symbols, whatever is assumed about them."""
     import sympy
 
     expression, names = sympy.sympify(expression), _arguments(exercise)
-    given = {str(s): s for s in expression.free_symbols}
+    given = {_spelt(s): s for s in expression.free_symbols}
 
     def value(*values):
         places = {
