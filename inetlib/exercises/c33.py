@@ -1,5 +1,7 @@
 """The exercises of chapter 3.3: the edges of a sheared grid, and which maps keep the ratios."""
 
+from functools import cache
+
 import numpy as np
 import sympy as sp
 
@@ -34,6 +36,7 @@ def _maps(rng):
     return [(f, Z) for pair in zip(exact, others + others[:2], strict=True) for f in pair]
 
 
+@cache
 def _quotient(f, z, upper=3, lower=1):
     """Quotient of two derivatives at four places, by Taylor coefficients on a small circle."""
     circle, values = 0.2 * np.exp(2j * np.pi * np.arange(32) / 32), sp.lambdify(z, f, "numpy")
@@ -45,11 +48,13 @@ def _quotient(f, z, upper=3, lower=1):
     return np.array(found)
 
 
+@cache
 def _kappa(f, z):
     found = _quotient(f, z)
     return np.round(found.mean(), 6) + 0 if np.ptp(found.real) + np.ptp(found.imag) < 1e-6 else None
 
 
+@cache
 def _constant(quotient):
     """The simplified quotient where no symbol is left in it, else None."""
     quotient = sp.simplify(quotient)
