@@ -8,9 +8,9 @@ Paper: Wang, Li, Li, Wang, "Discrete isogonal nets with similar parallelograms".
 from importlib import import_module
 
 __all__ = [
-    "NotConverged", "conformal", "design", "developable", "examples", "io", "loxodrome",
-    "measure", "mesh", "moebius", "motif", "parallelogram", "planar", "reference", "repair",
-    "solver", "surfaces",
+    "NotConverged", "conformal", "design", "developable", "examples", "exercises", "io",
+    "loxodrome", "measure", "mesh", "moebius", "motif", "parallelogram", "planar",
+    "reference", "repair", "solver", "surfaces",
 ]  # fmt: skip
 
 

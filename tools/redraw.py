@@ -1,6 +1,6 @@
 """Run the notebooks from first to last cell, store their outputs, and redraw every figure.
 
-    python tools/redraw.py              all notebooks
+    python tools/redraw.py              all notebooks, those of solutions, too
     python tools/redraw.py 3_1 4        those whose names start so
 
 A notebook is stored only when it ran to its end and shows something else than before; what
@@ -74,8 +74,9 @@ def main(arguments=None):
 
 
 def chosen(names):
-    """The notebooks whose names start with one of `names`, or all, in order."""
-    paths = sorted((ROOT / "notebooks").glob("*.ipynb"))
+    """The notebooks whose names start with one of `names`, or all, in order; then solutions."""
+    folders = ROOT / "notebooks", ROOT / "solutions"
+    paths = [path for folder in folders for path in sorted(folder.glob("*.ipynb"))]
     return [path for path in paths if not names or path.stem.startswith(tuple(names))]
 
 
@@ -151,7 +152,7 @@ def end(process):
 
 def tidy():
     """Remove what a killed run has left half written."""
-    for folder in ("notebooks", "figures", "figures/data"):
+    for folder in ("notebooks", "solutions", "figures", "figures/data"):
         files.sweep(ROOT / folder)
 
 
