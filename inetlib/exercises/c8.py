@@ -136,8 +136,7 @@ EXERCISES = [
             ),
             ("Loops first, then the Euler number.", lambda F: _topology(F)[::-1]),
             (
-                "Three edges for two triangles, four for two quads: that is so where all edges have "
-                "two faces.",
+                "Half as many edges as sides of faces: that is so where all edges have two faces.",
                 lambda F: (_topology(F)[0], len(_parts(F)[0]) - F.size / 2 + len(F)),
             ),
             (
