@@ -18,10 +18,6 @@ def _crossings(gamma):
     return sum(1 for k in range(1, 200) if k * sector / 2 < np.pi / 2)
 
 
-def _radians(value):
-    return "These look like radians: degrees are wanted." if 0.05 < abs(value) < 1.6 else ""
-
-
 def _windings(turn, rise, r, lap=2 * np.pi, laps=range(-9, 10)):
     """The three shortest ways that go around by `turn` and more laps."""
     return np.sort([np.hypot(r * (turn + lap * k), rise) for k in laps])[:3]
@@ -52,7 +48,6 @@ EXERCISES = [
         "one see a whole line from a point beside it?",
         kind="number",
         truth=30.0,
-        fault=lambda value: _radians(value),
         tolerance=1e-3,
         mistakes=[
             ("That is the whole vertex angle: gamma is half of it.", 60.0),

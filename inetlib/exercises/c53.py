@@ -77,7 +77,7 @@ EXERCISES = [
             ),
             ("These are radians, degrees are wanted.", np.arccos(1 / np.sqrt(3))),
             ("That is the angle with the meridians.", 90 - np.degrees(np.arccos(1 / np.sqrt(3)))),
-            ("The tangent of 60 degrees is no cosine: the cotangent is.", np.degrees(np.arctan(3))),
+            ("60 degrees with the parallels are 30 with the meridians, but Eq. (15) is off.", 30.0),
         ],
     ),
     Exercise(

@@ -176,6 +176,10 @@ EXERCISES = [
             ),
             ("The mobilities are ignored.", lambda J, f, m: _smallest(J, f)),
             (
+                "Both the sign and the mobilities: J d is -f, and not f.",
+                lambda J, f, m: -_smallest(J, f),
+            ),
+            (
                 "The step meets f + J d = 0, but a smaller one does, too.",
                 lambda J, f, m: _any_step(J, f, m),
             ),
