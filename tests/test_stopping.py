@@ -254,6 +254,7 @@ def stopped(folder, before, code, errors):
 
 
 @posix
+@pytest.mark.notebook
 def test_redraw_is_stopped_with_its_kernel_and_what_that_has_begun(clone):
     folder = clone(BUSY)
     before = (folder / "notebooks" / "a.ipynb").read_bytes()
@@ -284,6 +285,7 @@ atexit.register(lambda: (os.kill(os.getppid(), signal.SIGINT), time.sleep(99)))"
 
 
 @posix
+@pytest.mark.notebook
 @pytest.mark.parametrize(
     ("code", "cell"),
     [(ON.format("import", "nbclient.client"), "1 + 1"), (LAUNCHED, "1 + 1"), ("", CLOSING)],
@@ -296,6 +298,7 @@ def test_redraw_is_stopped_at_other_moments(clone, code, cell):
     assert stopped(folder, before, done.returncode, done.stderr)
 
 
+@pytest.mark.notebook
 def test_redraw_draws_alike_whatever_its_user_has_set(clone, somebody):
     folder = clone(SETTINGS)
     for name in ("notebooks", "figures"):

@@ -1,6 +1,6 @@
 """Run the notebooks from first to last cell, store their outputs, and redraw every figure.
 
-    python tools/redraw.py              all notebooks
+    python tools/redraw.py              all notebooks, those of solutions, too
     python tools/redraw.py 3_1 4        those whose names start so
 
 A notebook is stored only when it ran to its end and shows something else than before; what
