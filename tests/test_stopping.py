@@ -19,7 +19,7 @@ import psutil
 import pytest
 
 import inetlib
-from inetlib import cli, design, examples, files, io, start
+from inetlib import cli, design, ending, examples, files, io, start
 from inetlib.design import report
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -198,7 +198,7 @@ def test_signals_wait_for_what_must_not_be_cut():
     seen = []
     before = [signal.signal(n, lambda number, frame: seen.append(number)) for n in start.SIGNALS]
     try:
-        with start.held():
+        with ending.held():
             signal.raise_signal(signal.SIGINT)
             assert seen == []
         assert seen == [signal.SIGINT]
