@@ -10,6 +10,7 @@ only what they need, found by the names that a cell uses and binds.  A cell that
 
 `python -m inetlib.exercises.grade CELLS` is that process."""
 
+import ast
 import csv
 import json
 import os
@@ -122,19 +123,25 @@ def needed(cells: list[str]) -> list[str]:
 
 
 def _names(source):
-    """The names that a cell binds, and those that it uses; none where it is not plain Python."""
+    """The names that a cell binds, and those that it needs; none where it is not plain Python."""
     lines = source.splitlines()
     plain = "\n".join("" if re.match(r"\s*[%!?]", line) else line for line in lines)
-    try:
-        table = symtable.symtable(plain, "cell", "exec")
-    except (SyntaxError, ValueError, RecursionError):
-        return set(), set()
-    binds = {s.get_name() for s in table.get_symbols() if s.is_assigned() or s.is_imported()}
-    uses, tables = {s.get_name() for s in table.get_symbols() if s.is_referenced()}, [table]
-    while tables:  # what functions use when they are called
-        tables += tables[0].get_children()
-        uses |= {s.get_name() for s in tables.pop(0).get_symbols() if s.is_global()}
-    return binds, uses
+    binds, needs = set(), set()
+    with suppress(SyntaxError, ValueError, RecursionError):
+        for statement in reversed(ast.parse(plain).body):
+            table = symtable.symtable(ast.unparse(statement), "cell", "exec")
+            mine = {x.get_name() for x in table.get_symbols() if x.is_assigned() or x.is_imported()}
+            uses = {x.get_name() for x in table.get_symbols() if x.is_referenced()}
+            tables = list(table.get_children())  # what functions use when they are called
+            while tables:
+                tables += tables[0].get_children()
+                uses |= {x.get_name() for x in tables.pop(0).get_symbols() if x.is_global()}
+            if isinstance(statement, ast.AugAssign):
+                uses |= mine
+            elif not isinstance(statement, ast.Assign):  # loops use what they have bound
+                uses -= mine
+            binds, needs = binds | mine, (needs - mine) | uses
+    return binds, needs
 
 
 def _sources(notebook):
