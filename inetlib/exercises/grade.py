@@ -155,10 +155,11 @@ def _run(own, records, seconds):
     """Run the cells in `own`: a word if that came to no end."""
     home = own / "home"
     home.mkdir()
-    folders = "HOME", "USERPROFILE", "APPDATA", "TMPDIR", "TEMP", "TMP", "IPYTHONDIR"
+    folders = "HOME", "USERPROFILE", "APPDATA", "TMPDIR", "TEMP", "TMP"
     environment = {name: os.environ[name] for name in KEPT if name in os.environ}
     environment |= dict.fromkeys(folders, str(home)) | {
         "PYTHONPATH": os.pathsep.join(map(os.path.abspath, filter(None, sys.path))),
+        "IPYTHONDIR": str(own / "settings"),
         "MPLBACKEND": "Agg",
         "OPENBLAS_NUM_THREADS": "1",  # each thread wants memory
         "PYTHONDONTWRITEBYTECODE": "1",

@@ -5,7 +5,6 @@ order of vertices, faces and corners.  What is wrong with a file is a ValueError
 that starts with its name; a missing package is an ImportError that says what to install."""
 
 import importlib.util
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
