@@ -61,4 +61,8 @@ def setup(app):
     def words(app, what, name, obj, options, lines):
         lines[:] = wording.restructured(lines, lambda item: pages.address(item, 1, "html"))
 
+    def unsaid(app, what, name, obj, skip, options):  # fields are told of in their class
+        return skip or (getattr(obj, "__doc__", "") or "").startswith("Alias for field number")
+
     app.connect("autodoc-process-docstring", words)
+    app.connect("autodoc-skip-member", unsaid)
