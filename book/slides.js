@@ -11,3 +11,8 @@ Reveal.initialize({
   keyboardCondition: () => !document.activeElement?.closest(".scene"),
   plugins: [RevealNotes],
 });
+Reveal.on("slidechanged", ({ previousSlide }) => { // a net that nobody sees need not turn
+  previousSlide?.querySelectorAll(".scene").forEach((scene) => {
+    if (scene.inet) scene.inet.turning = false;
+  });
+});

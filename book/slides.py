@@ -29,7 +29,7 @@ PAGE = """<!DOCTYPE html>
 <link rel="stylesheet" href="../_static/reveal/reveal.css">
 <link rel="stylesheet" href="../_static/scenes.css">
 <link rel="stylesheet" href="../_static/slides.css">
-<script>window.MathJax = {{options: {{enableMenu: false}}, svg: {{matchFontHeight: false}}}};</script>
+<script>window.MathJax = {{options: {{enableMenu: false}}}};</script>
 <script defer src="../_static/mathjax/tex-svg.js"></script>
 <script defer src="../_static/reveal/reveal.js"></script>
 <script defer src="../_static/reveal/notes.js"></script>
