@@ -1,4 +1,4 @@
-"""The lectures of the book: their minutes add up, and what they name is there."""
+"""The lectures of the book and their slides: minutes add up, what they name is there."""
 
 import re
 import sys
@@ -12,6 +12,8 @@ from inetlib import exercises
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "book"))
 import pages  # noqa: E402
+import scenes  # noqa: E402
+import slides  # noqa: E402
 import wording  # noqa: E402
 
 PLANS = {"lectures_two": 2, "lectures_six": 6}
@@ -56,3 +58,27 @@ def test_every_exercise_that_a_lecture_gives_exists(name):
 def test_each_part_of_the_two_lectures_says_something_and_shows_something():
     parts = re.split(r"(?m)^### ", TEXTS["lectures_two"])[1:]
     assert all("**Say:**" in part and "**Show:**" in part for part in parts)
+
+
+@pytest.mark.parametrize("name", ["what", "where"])
+def test_slides_have_pictures_nets_and_formulas_that_are_there(name):
+    text = (ROOT / "book" / "slides" / f"{name}.md").read_text(encoding="utf-8")
+    found = slides.slides(text)
+    assert 12 <= len(found) <= 16
+    assert all('<aside class="notes">' in slide and "<h" in slide for slide in found)
+    whole = "\n".join(found)
+    pictures = re.findall(r'src="\.\./_images/([^"]+)"', whole)
+    files = {x.name for x in (ROOT / "figures").rglob("*.png")}
+    assert len(pictures) > 6 and set(pictures) <= files
+    nets = re.findall(r'data-scene="(\w+)"', whole)
+    assert len(nets) >= 2 and set(nets) <= set(scenes.SCENES)
+    assert "$" not in whole and whole.count('class="math') > 8
+    given = re.findall(r"\d+\.\d+(?:\.\d+)?(?=[,<])", whole.partition("Exercises: ")[2])
+    assert set(given) <= set(exercises.names())
+    assert f'<a href="slides/{name}.html">' in TEXTS["lectures_two"]
+
+
+def test_a_slide_is_markdown_with_formulas_left_to_mathjax():
+    (one, two) = slides.slides("## A\n\n$a_1 < b_2$ & *c*\n\nNOTE: said\n---\n## B\n")
+    assert r"\(a_1 &lt; b_2\)" in one and "<em>c</em>" in one
+    assert one.endswith('<aside class="notes">said</aside></section>') and "aside" not in two
