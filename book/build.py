@@ -13,6 +13,7 @@ from urllib.parse import unquote, urldefrag
 
 import pages
 import scenes
+import slides
 from sphinx.cmd.build import build_main
 
 HERE = Path(__file__).resolve().parent
@@ -78,6 +79,8 @@ def main():
     options = ["--fail-on-warning", "--keep-going", "--quiet", "--jobs", "auto"]
     doctrees = ["--doctree-dir", str(BUILT / "doctrees"), "--conf-dir", str(HERE)]
     failed = build_main([*options, "--builder", "html", *doctrees, str(SOURCE), str(HTML)])
+    if not failed:
+        slides.write(HTML)
     for line in (lost := [] if failed else broken(HTML)):
         print(f"a link to nothing: {line}", file=sys.stderr)
     failed = failed or int(bool(lost))

@@ -2,6 +2,7 @@
 
 import functools
 import http.server
+import re
 import threading
 from pathlib import Path
 
@@ -133,3 +134,20 @@ def test_the_search_works_without_a_network(visit):
     page = visit((HTML / "search.html").as_uri() + "?q=loxodrome")
     page.wait_for_selector("#search-results li a")
     assert page.locator("#search-results li a").count() > 3
+
+
+def test_the_summary_prints_on_two_pages(visit):
+    page = visit((HTML / "summary.html").as_uri())
+    assert shown(page) == GOOD
+    printed = page.pdf(prefer_css_page_size=True)
+    assert len(re.findall(rb"/Type\s*/Page\b", printed)) == 2
+
+
+@pytest.mark.parametrize("name", ["what", "where"])
+def test_the_slides_go_on_with_the_arrow_keys_and_fit(visit, name):
+    page = visit((HTML / "slides" / f"{name}.html").as_uri())
+    page.wait_for_function("() => window.Reveal?.isReady()")
+    for number in range(page.evaluate("Reveal.getTotalSlides()")):
+        assert page.evaluate("Reveal.getIndices().h") == number
+        assert page.evaluate("Reveal.getCurrentSlide().scrollHeight") <= 730, number
+        page.keyboard.press("ArrowRight")

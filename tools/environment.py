@@ -9,6 +9,7 @@ PIP_ONLY = (
     "libigl",
     "rhino3dm",
     "django-static-mathjax",
+    "sphinx-revealjs",
 )  # conda-forge has the first under another name, igl
 ROOT = Path(__file__).resolve().parent.parent
 
