@@ -9,13 +9,14 @@ endif
 BIN := .venv/$(SCRIPTS)
 READY := .venv/ready
 
-.PHONY: help figures gallery book test test-fast test-long test-browser test-book test-oldest \
+.PHONY: help figures gallery book course test test-fast test-long test-browser test-book test-oldest \
 	test-newest notebooks explore bench lint clean
 
 help:
 	@echo "make figures       run every notebook and redraw figures/"
 	@echo "make gallery       draw figures/gallery/: twelve nets and the lines that make them"
 	@echo "make book          the book, to be read in any browser: book/_build/html/index.html"
+	@echo "make course        the notebooks to hand out, and with solutions (FOLDER=... for your own)"
 	@echo "make test          all tests, every notebook rerun from the first cell"
 	@echo "make test-fast     the tests without notebooks, browser and other processors"
 	@echo "make test-long     what other processors would draw, in all settings; half an hour"
@@ -40,6 +41,9 @@ gallery: $(READY)
 
 book: $(READY)
 	$(BIN)/python book/build.py
+
+course: $(READY)
+	$(BIN)/python tools/course.py $(if $(FOLDER),"$(FOLDER)")
 
 test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder

@@ -472,7 +472,8 @@ def gallery(source: Path):
     ]
     for name, net in json.loads((folder / "gallery.json").read_text(encoding="utf-8")).items():
         off = "exact" if net["exact"] else f"off by at most {net['deviation_deg']:.2g} degrees"
-        angles = f"$\\theta = {net['theta_deg']:.4g}\u00b0$, $\\theta_0 = {net['theta0_deg']:.4g}\u00b0$, {off}"
+        angles = f"$\\theta = {net['theta_deg']:.4g}\u00b0$"
+        angles += f", $\\theta_0 = {net['theta0_deg']:.4g}\u00b0$, {off}"
         page += ["", f"## {net['title']}", "", f"![{net['sentence']}](gallery_pictures/{name}.png)"]
         page += ["", f"{net['sentence']} {net['quads']} quads; {angles}."]
         page += ["", "```python", net["imports"].rstrip() + "\n", "", net["lines"].rstrip(), "```"]

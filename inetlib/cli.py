@@ -52,6 +52,9 @@ HELP = {  # what a command does, and examples
     "figures": """Rerun the notebooks and redraw their figures (in a clone).
         inet figures fig05
         inet figures 3_1 4""",
+    "course": """Grade the exercises in many notebooks that were handed in.
+        inet course grade submissions
+        inet course grade submissions -o 'week 2.csv' --seconds 60""",
 }
 TEXTS = {name: [*map(str.strip, text.splitlines())] for name, text in HELP.items()}
 
@@ -368,6 +371,40 @@ def notebooks(folder: Path, name: str) -> list[str]:
     return found
 
 
+def _course_options(command):
+    add = command.add_argument
+    add("task", choices=("grade",), metavar="grade", help="grade what is in a folder")
+    text = """of the notebooks, *.ipynb; copies of them are run, with limits and in a temporary
+        folder, but with your rights: this is no sandbox against malice"""
+    add("folder", help=text)
+    text = "the table, a row a notebook: 1 right, 0 wrong, nothing where no answer is (%(default)s)"
+    add("-o", "--output", default="grades.csv", metavar="FILE", help=text)
+    add("--force", action="store_true", help="replace the file if it is there")
+    text = "for each notebook, at most (%(default)g)"
+    add("--seconds", type=_positive, default=30.0, metavar="S", help=text)
+    _say_options(command, numbers=False)
+
+
+def _course(given):
+    output = Path(given.output)
+    if output.suffix.lower() != ".csv":
+        raise ValueError(f"{output}: a table is written, its name ends with .csv")
+    files.check_place(output, given.force)
+    from .exercises import grade, names
+
+    paths, bar = (
+        grade.notebooks(given.folder),
+        {"unit": "notebook", "disable": not _progress(given)},
+    )
+    from tqdm import tqdm
+
+    rows = [grade.grade(path, given.seconds) for path in tqdm(paths, **bar)]
+    grade.write(output, rows, names())
+    if not given.quiet:
+        print(f"{output}\n{grade.summary(rows)}")
+    return DONE
+
+
 def _read_net(given, must_label=True):
     """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
     from . import io, measure, mesh, repair
@@ -461,4 +498,5 @@ COMMANDS = {
     "optimize": (_optimize, _optimize_options),
     "explore": (_explore, _explore_options),
     "figures": (_figures, _figures_options),
+    "course": (_course, _course_options),
 }

@@ -13,6 +13,18 @@ LIVE = set()  # the temporary files and folders of this process
 WRITTEN = []  # the files that this process has put in their places
 
 
+def check_place(path: Path, force: bool = False) -> None:
+    """Raise ValueError or OSError if no file can be written there, or one may not be replaced."""
+    if path.is_dir():
+        raise ValueError(f"{path} is a directory: the name of a file is wanted")
+    if not path.parent.is_dir():
+        raise ValueError(f"{path}: there is no folder {path.parent}: make it first")
+    if path.exists() and not force:
+        raise FileExistsError(f"{path} exists already: --force (force=True) replaces it")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise PermissionError(f"{path}: no permission to write there")
+
+
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
     """A name like `path` to write to, renamed onto it when the block ends well, else removed."""

@@ -5,13 +5,11 @@ Nothing is raised, as a KeyboardInterrupt gets lost while packages are loaded an
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 
 from . import files
-
-SIGNALS = signal.SIGINT, signal.SIGTERM
-ENDS = []  # functions without arguments that end what this process has started
+from .ending import ENDS, SIGNALS
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -51,17 +49,3 @@ def listen(sentence: Callable[[], str], fresh: bool = False) -> None:
 def finished() -> None:
     """The work is done: Ctrl-C no longer changes how this process ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-@contextmanager
-def held() -> Iterator[None]:
-    """Signals wait until the block has ended: it starts what must be known to be ended."""
-    waiting = []
-    handlers = {n: signal.signal(n, lambda number, _: waiting.append(number)) for n in SIGNALS}
-    try:
-        yield
-    finally:
-        for number, handler in handlers.items():
-            signal.signal(number, handler)
-        for number in waiting:
-            signal.raise_signal(number)

@@ -94,6 +94,8 @@ def test_help_and_wrong_input_load_nothing_slow(tmp_path):
         f"web --profile none {angles} -m 9 -o a.obj",
         "explore none.obj",
         "figures fig99",
+        "course grade none",
+        "course grade . -o old.obj",
     ]
     code = [sys.executable, "-c", LOADED, *rows, *wrong]
     done = subprocess.run(code, cwd=tmp_path, capture_output=True, text=True)
@@ -107,6 +109,8 @@ def test_every_help_text_shows_its_examples_and_they_run(inet, command):
     code, out, err = inet(command, "--help")
     assert (code, err) == (0, "") and max(len(line) for line in out.splitlines()) <= 100
     io.write("roof.obj", *examples.wavy_roof(15))
+    Path("submissions").mkdir()
+    Path("submissions", "a.ipynb").write_text('{"nbformat": 4, "cells": []}')
     text, *lines = cli.TEXTS[command]
     assert text in out and len(lines) > 1
     for line in lines:

@@ -66,7 +66,7 @@ def symbolic(exercise, function):
     """What a student types: an expression in the symbols of the exercise, or the thing itself."""
     if exercise.kind == "expression":
         names = re.search(r"`([\w, ]+)`", exercise.task[exercise.task.index("expression") :])[1]
-        return function(*sp.symbols(names))
+        return function(*sp.symbols(names, seq=True))
     constant = exercise.kind in ("number", "array") and callable(function)
     return function() if constant else function
 

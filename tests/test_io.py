@@ -1,6 +1,7 @@
 """`io` against other libraries that read the same files, and against bad files."""
 
 import json
+import os
 import struct
 import warnings
 from pathlib import Path
@@ -463,7 +464,7 @@ def test_what_a_library_could_not_write_is_told(
 def test_a_place_without_permission_is_told_before_the_work(tmp_path, web, monkeypatch):
     (tmp_path / "old.obj").touch()
     asked = []
-    monkeypatch.setattr(io.os, "access", lambda path, mode: asked.append(path))
+    monkeypatch.setattr(os, "access", lambda path, mode: asked.append(path))
     for name, place in (("old.obj", tmp_path / "old.obj"), ("new.obj", tmp_path)):
         with pytest.raises(PermissionError, match=f"{name}: no permission to write there"):
             io.check_output(tmp_path / name, force=True)

@@ -311,7 +311,7 @@ def test_covers_of_bumpy_disks_are_good_or_say_that_they_are_not(rng, theta, the
 
 
 @pytest.mark.parametrize("suffix", [*BITS, pytest.param(".vtp", marks=pytest.mark.long)])
-@settings(max_examples=15)
+@settings(max_examples=6)
 @given(arrays(float, (12, 3), elements=st.floats(-1e99, 1e99)), seeds)
 def test_files_give_back_bit_by_bit_what_was_written(tmp_path_factory, suffix, V, rng):
     if io.missing(suffix):

@@ -19,7 +19,7 @@ import psutil
 import pytest
 
 import inetlib
-from inetlib import cli, design, examples, files, io, start
+from inetlib import cli, design, ending, examples, files, io, start
 from inetlib.design import report
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -198,7 +198,7 @@ def test_signals_wait_for_what_must_not_be_cut():
     seen = []
     before = [signal.signal(n, lambda number, frame: seen.append(number)) for n in start.SIGNALS]
     try:
-        with start.held():
+        with ending.held():
             signal.raise_signal(signal.SIGINT)
             assert seen == []
         assert seen == [signal.SIGINT]
@@ -254,6 +254,7 @@ def stopped(folder, before, code, errors):
 
 
 @posix
+@pytest.mark.notebook
 def test_redraw_is_stopped_with_its_kernel_and_what_that_has_begun(clone):
     folder = clone(BUSY)
     before = (folder / "notebooks" / "a.ipynb").read_bytes()
@@ -284,6 +285,7 @@ atexit.register(lambda: (os.kill(os.getppid(), signal.SIGINT), time.sleep(99)))"
 
 
 @posix
+@pytest.mark.notebook
 @pytest.mark.parametrize(
     ("code", "cell"),
     [(ON.format("import", "nbclient.client"), "1 + 1"), (LAUNCHED, "1 + 1"), ("", CLOSING)],
@@ -296,6 +298,7 @@ def test_redraw_is_stopped_at_other_moments(clone, code, cell):
     assert stopped(folder, before, done.returncode, done.stderr)
 
 
+@pytest.mark.notebook
 def test_redraw_draws_alike_whatever_its_user_has_set(clone, somebody):
     folder = clone(SETTINGS)
     for name in ("notebooks", "figures"):

@@ -1,6 +1,6 @@
 """Run the notebooks from first to last cell, store their outputs, and redraw every figure.
 
-    python tools/redraw.py              all notebooks
+    python tools/redraw.py              all notebooks, those of solutions, too
     python tools/redraw.py 3_1 4        those whose names start so
 
 A notebook is stored only when it ran to its end and shows something else than before; what
@@ -10,7 +10,8 @@ and theta0 over all faces, of its exact nets and of all that it draws, and wheth
 
 import sys
 
-from inetlib.start import ENDS, finished, held, listen
+from inetlib.ending import ENDS, held, kill
+from inetlib.start import finished, listen
 
 if __name__ == "__main__":  # before the slow imports
     words = "redraw: stopped, notebooks that were not finished are as they were"
@@ -18,11 +19,9 @@ if __name__ == "__main__":  # before the slow imports
 
 import argparse
 import copy
-import os
-import signal
 import tempfile
 import time
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -140,13 +139,7 @@ def environment(own):
 
 def end(process):
     """Kill a kernel, if it lives, with what it started; remove what it leaves half written."""
-    with suppress(OSError):
-        if os.name == "nt":
-            process.kill()
-            process.wait(2)
-        else:
-            os.killpg(process.pid, signal.SIGKILL)  # jupyter_client made it a group of its own
-            os.waitpid(process.pid, 0)  # until then its number counts as alive
+    kill(process)  # jupyter_client made it a group of its own
     tidy()
 
 

@@ -65,7 +65,7 @@ EXERCISES = [
         kind="array",
         truth=RHOMBUS,
         fault=_degrees,
-        tolerance=1e-4,
+        tolerance=1e-3,
         mistakes=[
             ("The two are exchanged: so the parallelograms are rectangles.", RHOMBUS[::-1]),
             ("These are other rhombuses: 140 degrees is the supplement.", np.pi - RHOMBUS),
@@ -86,7 +86,7 @@ EXERCISES = [
         kind="array",
         truth=INVERTED,
         fault=_degrees,
-        tolerance=1e-4,
+        tolerance=1e-3,
         mistakes=[
             (
                 "Both supplements belong to a quarter turn: it inverts mu as well.",

@@ -36,8 +36,8 @@ def _surfaces(rng):
     return [(found[0][0], 0.0, 0.0), *found]
 
 
-def _difference(value, X, u, v):
-    """How far the printed derivatives are from those of the answer, where both start alike."""
+def _start(value, X, u, v):
+    """What must hold where both parametrisations begin."""
     return "The point Y(0, 0) must be X(0, 0)." if u == v == 0 else ""
 
 
@@ -67,6 +67,13 @@ def _vectors(corners):
 def _is_theta(corners):
     d1, d2, m13, m24 = _vectors(corners)
     return bool(abs(_angle(d1, d2) - _angle(m13, m24)) < 1e-7)
+
+
+def _why(value, corners):
+    """Both angles of a quad."""
+    d1, d2, m13, m24 = _vectors(corners)
+    found = _angle(d1, d2), _angle(m13, m24)
+    return "Here theta = {:.9f}, theta0 = {:.9f}, in radians.".format(*found)
 
 
 def _divided(corners):
@@ -177,7 +184,7 @@ EXERCISES = [
         kind="function",
         instances=_surfaces,
         truth=lambda X, u, v: X(u + v, v - u),
-        fault=_difference,
+        fault=_start,
         mistakes=[
             (
                 "So it is printed; its derivatives are Y_u = X_u + X_v and Y_v = X_v - X_u: a "
@@ -211,6 +218,7 @@ EXERCISES = [
         kind="function",
         instances=_quads,
         truth=lambda corners: _is_theta(corners),
+        fault=_why,
         mistakes=[
             ("Right angles are refused: you divide by cos theta0.", lambda c: _divided(c)),
             ("d1 and d2 are exchanged in Eq. (13).", lambda c: _sign(c, -2)),

@@ -209,14 +209,9 @@ def _fault(exercise, case, got, wanted):
         about = "This has not the form that is wanted."
     if exercise.truth is None:
         return f"{words}. {about}" if about else ""
-    measured = start and a is not None and b is not None and not isinstance(got, TRUTHS)
-    off = (
-        f", which is off by {np.abs(a - b).max():.3g}."
-        if measured
-        else ", which is wrong."
-        if start
-        else " is not it."
-    )
+    off = ", which is wrong." if start else " is not it."
+    if start and a is not None and b is not None and not isinstance(got, TRUTHS):
+        off = f", which is off by {np.abs(a - b).max():.3g}."
     return f"{words}{off} {about}".strip()
 
 

@@ -5,7 +5,6 @@ order of vertices, faces and corners.  What is wrong with a file is a ValueError
 that starts with its name; a missing package is an ImportError that says what to install."""
 
 import importlib.util
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -190,14 +189,7 @@ def check_output(
     known = _format(path, WRITERS, "write")
     if curves and not known.curves:
         raise ValueError(f"{path}: no place for curves; write one of {' '.join(WITH_CURVES)}")
-    if path.is_dir():
-        raise ValueError(f"{path} is a directory: the name of a file is wanted")
-    if not path.parent.is_dir():
-        raise ValueError(f"{path}: there is no folder {path.parent}: make it first")
-    if path.exists() and not force:
-        raise FileExistsError(f"{path} exists already: --force (force=True) replaces it")
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise PermissionError(f"{path}: no permission to write there")
+    files.check_place(path, force)
     suffix = path.suffix.lower()
     if unit not in exchange.UNITS or up not in ("z", "y"):
         raise ValueError(f'unit = {unit!r}, up = {up!r}: mm, cm, m, in or ft, and "z" or "y"')
