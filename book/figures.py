@@ -74,13 +74,8 @@ def _spatial(V):
 def _page(path, heading, name, entry, module, nets):
     """The page of one figure."""
     lines = [f"# {heading}", "", "{.figure}", f"![{heading}]({name}.svg)", ""]
-    lines += [f"[SVG](<{name}.svg>) \u00b7 [PNG](<{name}.png>)", ""]
-    lines = [
-        x.replace("[SVG](<", "{download}`SVG <")
-        .replace(">)", ">`")
-        .replace("[PNG](<", "{download}`PNG <")
-        for x in lines
-    ]
+    files = (f"{{download}}`{x.upper()} <{name}.{x}>`" for x in ("svg", "png"))
+    lines += [" \u00b7 ".join(files), ""]
     lines += [pages.scene(x, name) + "\n" for x in pages.SCENES.get(name, [])]
     item = f"Fig. {int(name[3:])}" if name.startswith("fig") else None
     if item:
