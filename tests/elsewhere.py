@@ -88,13 +88,12 @@ def main(folder, noise=0.0):
     """Everything, into a folder."""
     matplotlib.use("Agg")
     folder, rewritten = Path(folder), {}
-    if not float(noise):
-        np.savez(folder / "results.npz", **results())
-        tables = [folder / "table1.csv", folder / "table1.md"]
-        before = [table.read_bytes() for table in tables]
-        table1.save(table1.rows({name: table1.results(name) for name in table1.VARIANTS}), folder)
-        if before != [table.read_bytes() for table in tables]:
-            rewritten["table1"] = tables[0].read_text()
+    np.savez(folder / "results.npz", **results())
+    tables = [folder / "table1.csv", folder / "table1.md"]
+    before = [table.read_bytes() for table in tables]
+    table1.save(table1.rows({name: table1.results(name) for name in table1.VARIANTS}), folder)
+    if before != [table.read_bytes() for table in tables]:
+        rewritten["table1"] = tables[0].read_text()
     rewritten |= drawn(sorted(publish.read_manifest(FIGURES)), folder, float(noise))
     (folder / "rewritten.json").write_text(json.dumps([kernels(), rewritten]))
 

@@ -215,6 +215,66 @@ def test_check_prints_a_sentence_and_keeps_what_is_solved(capsys, monkeypatch):
         exercises.check("4.99", 1)
 
 
+def toured(changed):
+    """The five steps of the tour, or what they say once their number is `changed`."""
+    lines, found = [text(c) for c in cells("notebooks", "0_start_here")], []
+    space = {}
+    exec(next(x for x in lines if "grid = " in x), space)
+    for cell in (x for x in lines if 'check("tour.' in x):
+        (line,) = [x for x in cell.splitlines() if "# change" in x]
+        old, new = re.search(r"# change (?:the first )?(\S+) to (\S+)", line).groups()
+        line_now = re.sub(rf"\b{old}\b", new, line, count=1) if changed else line
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            exec(cell.replace(line, line_now), space)
+        found.append(out.getvalue())
+    return found
+
+
+def test_each_step_of_the_tour_says_what_one_change_did():
+    before, after = toured(False), [" ".join(x.split()) for x in toured(True)]
+    stored = [c for c in cells("notebooks", "0_start_here") if 'check("tour.' in text(c)]
+    assert before == ["".join(c["outputs"][0]["text"]) for c in stored]
+    assert len(before) == len(exercises.tour.STEPS) == 5
+    assert all("Now" in x for x in before) and not any("Now" in x for x in after)
+    lam, mu = parallelogram.ratios(np.radians(75), np.radians(60))
+    assert f"theta = 75.00, theta0 = 60.00 degrees, lam = {lam:.5f}, mu = {mu:.5f}" in after[0]
+    grids = [conformal.sheared_grid(np.pi / 3, np.pi / 3, m, m, 0.6, 2 / m) for m in (8, 16)]
+    coarse, fine = (deviation(*conformal.quads(1 / grid)) for grid in grids)
+    assert (
+        f"off by up to {fine:.3f} degrees. Without every second line it was {coarse:.3f}"
+        in after[2]
+    )
+    assert f"{fine / coarse:.2f} of that is left" in after[2]
+    pushed = conformal.quads(conformal.sheared_grid(np.pi / 3, np.pi / 3, 10, 8, 0.6, 0.25) ** 2)
+    pushed[0][49, 0] += 0.05
+    assert f"4 of 80 faces are off, by up to {deviation(*pushed):.2f} degrees" in after[4]
+
+
+def deviation(V, Q):
+    """By how much the angles are off 60 degrees at most, in degrees."""
+    d1, d2 = V[Q[:, 2]] - V[Q[:, 0]], V[Q[:, 3]] - V[Q[:, 1]]
+    pairs = (d1, d2), (d1 + d2, d2 - d1)
+    cosines = [
+        (a * b).sum(1) / np.linalg.norm(a, axis=1) / np.linalg.norm(b, axis=1) for a, b in pairs
+    ]
+    return np.abs(np.degrees(np.arccos(cosines)) - 60).max()
+
+
+def test_the_tour_tells_turns_of_the_labels_and_what_is_no_net():
+    V, Q = conformal.quads(conformal.sheared_grid(1.2, 0.9, 4, 4) ** 2)
+    for turns in range(5):
+        checked = exercises.check("tour.4", (V, np.roll(Q, turns, axis=1)))
+        angles = np.degrees([1.2, 0.9] if turns % 2 == 0 else [np.pi - 1.2, np.pi - 0.9])
+        assert checked.right == (turns % 4 > 0)
+        assert "theta = {:.2f}, theta0 = {:.2f} degrees".format(*angles) in checked.message
+        assert ("supplements" in checked.message) == (turns % 2 == 1)
+    for step in exercises.tour.STEPS:
+        for wrong in (None, 5, "net", (V,), (V, 3), (V, Q[:, :3])):
+            checked = exercises.check(step, wrong)
+            assert not checked.right and "a net (V, Q) is wanted" in checked.message
+    assert not exercises.solved & set(exercises.tour.STEPS)
+
+
 def test_symbols_count_by_their_names_and_lambda_is_lam():
     mu, lam = sp.symbols("mu lambda", positive=True)
     right = lam * sp.sqrt(2 * (1 + mu**2) / (1 + lam**2)) / mu

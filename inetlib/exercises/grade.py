@@ -28,7 +28,7 @@ from typing import NamedTuple
 from .. import files
 from ..ending import started
 
-CHECK = re.compile(r"\bcheck\(")
+CHECK = re.compile(r"""\bcheck\((?!\s*["']tour)""")  # the tour is no exercise
 NAME = re.compile(CHECK.pattern + r"""\s*["']([\w.]+)["']""")
 MEMORY, LARGEST = 2 << 30, 100 << 20  # bytes: of a process, and of a file that it writes
 KEPT = "PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "SYSTEMROOT", "COMSPEC", "PATHEXT"
@@ -211,7 +211,7 @@ def _answer(path):
 
     def checked(name, answer=None):
         found = check(name, answer)
-        if answer is not None:
+        if answer is not None and name in known:
             say(name, found.right)
         return found
 
