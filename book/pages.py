@@ -10,7 +10,6 @@ import shutil
 from pathlib import Path
 from typing import NamedTuple
 
-import nbformat
 import scenes
 import wording
 
@@ -107,6 +106,8 @@ def inside(text: str, depth: int = 0) -> str:
             return f"[{words}]({up}{TEXTS[path]}.md{mark})"
         if path.endswith(".ipynb"):
             return f"[{words}]({up}notebooks/{Path(path).name}{mark})"
+        if path.startswith("book/"):
+            return f"[{words}]({up}{path.removeprefix('book/')}{mark})"
         if not file:
             return f"[{words}]({mark})"
         return words if words.startswith("`") else f"{words} (`{path}`)"
@@ -148,6 +149,8 @@ def about(row: Row) -> list[str]:
 @functools.cache
 def stored(notebook: str):
     """A notebook as it is stored."""
+    import nbformat  # more than a second, which few need
+
     return nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4)
 
 
@@ -186,6 +189,8 @@ def check(test: str, depth: int = 0) -> str:
 
 def notebooks(folder: Path):
     """The notebooks as pages: links, words for pictures, scenes below their figures."""
+    import nbformat
+
     folder.mkdir()
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
         notebook = nbformat.from_dict(json.loads(json.dumps(stored(path.stem))))

@@ -46,9 +46,9 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
     last = np.minimum((corners.max(axis=1) - SUB // 2) // SUB, [w - 1, h - 1])
     size = np.maximum(last - first + 1, 0)
     sides = _sides(corners.astype(float))  # whole numbers below 2^53 are exact, and fast
-    area = sides[2].sum(axis=1)
-    sides *= np.sign(area)[:, None]  # all turn alike, and what has no area is not seen
-    sides[2][area == 0] = -1
+    area = sides[2].sum(axis=0)
+    sides *= np.sign(area)  # all turn alike, and what has no area is not seen
+    sides[2][:, area == 0] = -1
     area = np.abs(area)
     count = np.where(area > 0, size.prod(axis=1), 0)
     ends = np.cumsum(count)
@@ -63,10 +63,10 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
         place += ends[start - 1] if start else 0
         row, column = np.divmod(place, size[k, 0])
         row, column = row + first[k, 1], column + first[k, 0]
-        parts = _parts(sides, k, column, row)
-        inside = (parts >= 0).all(axis=1)
-        k, row, column, parts = (a[inside] for a in (k, row, column, parts))
-        depth = np.einsum("ij,ij->i", parts, step[k]) / area[k]
+        for side in range(3):  # what is outside of one need not be tried at the next
+            inside = np.flatnonzero(_part(sides, side, k, column, row) >= 0)
+            k, row, column = k[inside], row[inside], column[inside]
+        depth = np.einsum("ij,ij->i", _parts(sides, k, column, row), step[k]) / area[k]
         key = np.round(DEEP * depth).astype(np.int64) * len(T) + (len(T) - 1 - k)
         np.maximum.at(best, (h - 1 - row) * w + column, key)
         start = stop
@@ -83,16 +83,21 @@ def buffer(xy: np.ndarray, near: np.ndarray, T: np.ndarray, shape: tuple) -> Buf
 
 
 def _sides(corners):
-    """Coefficients (3, t, 3) of `_parts`, in x, in y, and constant, for the three sides."""
-    x, y = np.moveaxis(corners[:, [1, 2, 0]], 2, 0)
-    u, v = np.moveaxis(corners[:, [2, 0, 1]], 2, 0)
+    """Coefficients (3, 3, t) of `_parts`, in x, in y, and constant, for the three sides."""
+    x, y = corners[:, [1, 2, 0]].transpose(2, 1, 0)
+    u, v = corners[:, [2, 0, 1]].transpose(2, 1, 0)
     return np.stack([y - v, u - x, x * v - y * u])
 
 
+def _part(sides, side, k, column, row):
+    """Twice the area, with sign, that a pixel's centre makes with a side of k."""
+    a, b, c = (one[side].take(k) for one in sides)
+    return a * (column * float(SUB) + SUB // 2) + b * (row * float(SUB) + SUB // 2) + c
+
+
 def _parts(sides, k, column, row):
-    """Twice the areas (., 3), with sign, that a pixel's centre makes with the sides of k."""
-    x, y = (n * float(SUB) + SUB // 2 for n in (column, row))
-    return sides[0][k] * x[:, None] + sides[1][k] * y[:, None] + sides[2][k]
+    """These for the three sides, (., 3)."""
+    return np.stack([_part(sides, side, k, column, row) for side in range(3)], axis=1)
 
 
 def picture(seen: Buffer, normals: np.ndarray, colours: np.ndarray, T: np.ndarray) -> np.ndarray:

@@ -14,23 +14,18 @@ sys.path.insert(0, str(ROOT / "book"))
 import pages  # noqa: E402
 import scenes  # noqa: E402
 import slides  # noqa: E402
+import walk  # tools/walk.py  # noqa: E402
 import wording  # noqa: E402
 
 PLANS = {"lectures_two": 2, "lectures_six": 6}
 TEXTS = {name: (ROOT / "book" / f"{name}.md").read_text(encoding="utf-8") for name in PLANS}
-LINK = re.compile(r"notebooks/(\w+)\.ipynb#((?:[^()\s]|\([^()\s]*\))+)")
-
-
-def lectures(text):
-    """The minutes of each lecture of a plan, as pairs: {heading: [(from, to), ...]}."""
-    parts = [part.partition("\n") for part in re.split(r"(?m)^## ", text)[1:]]
-    times = re.compile(r"(?m)^(?:### |\| )(\d+) to (\d+)\b")
-    return {head: [(int(a), int(b)) for a, b in times.findall(x)] for head, _, x in parts}
 
 
 @pytest.mark.parametrize("name", PLANS)
 def test_the_minutes_of_each_lecture_add_up_to_90(name):
-    found = lectures(TEXTS[name])
+    found = {}
+    for lecture, start, stop, *_ in walk.parts(name):
+        found.setdefault(lecture, []).append((start, stop))
     assert len(found) == PLANS[name]
     for heading, times in found.items():
         assert len(times) >= 5, heading
@@ -41,7 +36,7 @@ def test_the_minutes_of_each_lecture_add_up_to_90(name):
 
 @pytest.mark.parametrize("name", PLANS)
 def test_every_heading_that_a_lecture_shows_is_in_its_notebook(name):
-    found = LINK.findall(TEXTS[name])
+    found = [link for *_, shown in walk.parts(name) for link in shown]
     assert len(found) > 20
     for notebook, mark in found:
         assert mark in map(wording.slug, pages.headings(notebook)), (notebook, mark)

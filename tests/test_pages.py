@@ -79,6 +79,7 @@ def test_links_between_files_of_the_project_become_those_of_the_book():
     text = "[a](../PAPER.md) [b](4_isogonal_nets.ipynb#Def.-3:-a-$(x)$-quad) [`c`](tests/t.py)"
     found = pages.inside(text, 1)
     assert found == "[a](../paper.md) [b](../notebooks/4_isogonal_nets.ipynb#def-3-a-quad) `c`"
+    assert pages.inside("[lectures](book/two.md#a)") == "[lectures](two.md#a)"
     assert pages.inside("[d](tests/t.py) [e](#Two-words)") == "d (`tests/t.py`) [e](#two-words)"
 
 

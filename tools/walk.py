@@ -12,10 +12,6 @@ import sys
 import time
 from pathlib import Path
 
-import nbformat
-from nbclient import NotebookClient
-from nbclient.exceptions import CellExecutionError
-
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "book"))
 import wording  # noqa: E402
@@ -41,6 +37,9 @@ class Opened:
     """A notebook with its kernel, and how many of its cells have been run."""
 
     def __init__(self, stem):
+        import nbformat
+        from nbclient import NotebookClient
+
         self.book = nbformat.read(ROOT / "notebooks" / f"{stem}.ipynb", as_version=4)
         place = {"metadata": {"path": str(ROOT / "notebooks")}}
         self.client = NotebookClient(self.book, timeout=600, resources=place)
@@ -62,6 +61,8 @@ class Opened:
 
 def main(plans):
     """Exit code 0 when every cell ran in its time."""
+    from nbclient.exceptions import CellExecutionError
+
     late, before, opened = 0, None, {}
     for plan in plans or PLANS:
         for lecture, start, stop, title, shown in parts(plan):
