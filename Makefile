@@ -17,8 +17,8 @@ help:
 	@echo "make gallery       draw figures/gallery/: twelve nets and the lines that make them"
 	@echo "make book          the book, to be read in any browser: book/_build/html/index.html"
 	@echo "make course        the notebooks to hand out, and with solutions (FOLDER=... for your own)"
-	@echo "make test          all tests, every notebook rerun from the first cell"
-	@echo "make test-fast     the tests without notebooks, browser and other processors"
+	@echo "make test          all tests but those in a browser, every notebook rerun"
+	@echo "make test-fast     the tests without notebooks and other processors"
 	@echo "make test-long     what other processors would draw, in all settings; half an hour"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
 	@echo "make test-book     the book, every page of it, in Chromium with no network"
@@ -46,7 +46,7 @@ course: $(READY)
 	$(BIN)/python tools/course.py $(if $(FOLDER),"$(FOLDER)")
 
 test: $(READY)
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not browser"
 
 test-fast: $(READY)
 	$(BIN)/python -m pytest -p no:nbmake -n auto --dist loadfile --no-loadscope-reorder -m "not notebook and not browser and not elsewhere"
@@ -56,7 +56,7 @@ test-long: $(READY)
 
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py
-	$(BIN)/python -m pytest -m browser -rs -s
+	$(BIN)/python -m pytest -m browser -rs
 
 test-book: book
 	$(BIN)/python tools/browser.py

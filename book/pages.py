@@ -131,8 +131,10 @@ def _box(match):
 @functools.cache
 def headings(notebook: str) -> dict[str, str]:
     """The headings of a notebook with what they name, here or in small print below."""
-    cells = stored(notebook).cells
-    lines = [x for c in cells if c.cell_type == "markdown" for x in c.source.splitlines() if x]
+    texts = [
+        "".join(c["source"]) for c in stored(notebook)["cells"] if c["cell_type"] == "markdown"
+    ]
+    lines = [x for text in texts for x in text.splitlines() if x]
     following = zip(lines, [*lines[1:], ""], strict=True)
     small = [
         (x.lstrip("# "), y if y.startswith("<small>") else "") for x, y in following if x[0] == "#"
@@ -147,11 +149,9 @@ def about(row: Row) -> list[str]:
 
 
 @functools.cache
-def stored(notebook: str):
+def stored(notebook: str) -> dict:
     """A notebook as it is stored."""
-    import nbformat  # more than a second, which few need
-
-    return nbformat.read(ROOT / "notebooks" / f"{notebook}.ipynb", as_version=4)
+    return json.loads((ROOT / "notebooks" / f"{notebook}.ipynb").read_text(encoding="utf-8"))
 
 
 def place(row: Row, depth: int = 0) -> str:
@@ -193,7 +193,7 @@ def notebooks(folder: Path):
 
     folder.mkdir()
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
-        notebook = nbformat.from_dict(json.loads(json.dumps(stored(path.stem))))
+        notebook = nbformat.read(path, as_version=4)
         cells = []
         for cell in notebook.cells:
             cells.append(cell)
@@ -326,7 +326,8 @@ def _names():
 
 @functools.cache
 def _code(notebook):
-    return "\n".join(c.source for c in stored(notebook).cells if c.cell_type == "code")
+    cells = stored(notebook)["cells"]
+    return "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "code")
 
 
 # -- the paper and its claims

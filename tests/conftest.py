@@ -1,7 +1,6 @@
 """Drawing without a screen, and properties that try the same examples on every machine."""
 
 import inspect
-import os
 import sys
 from pathlib import Path
 
@@ -15,8 +14,8 @@ matplotlib.use("Agg")
 settings.register_profile("still", derandomize=True, deadline=None, database=None, max_examples=60)
 settings.load_profile("still")
 
-LONGEST = ["notebooks", "browser", "elsewhere", "browser_jupyter", "stopping", "exercises"]
-LONGEST += ["drawings", "design", "explorer_serve", "course", "loxodrome", "io", "properties"]
+LONGEST = ["notebooks", "elsewhere", "stopping", "exercises", "design"]
+LONGEST += ["drawings", "explorer_serve", "course", "loxodrome", "io", "properties"]
 LONGEST += ["publish", "explorer", "fuzz", "view"]
 
 
@@ -34,11 +33,6 @@ def pytest_pyfunc_call(pyfuncitem):
         given = {name: pyfuncitem.funcargs[name] for name in pyfuncitem._fixtureinfo.argnames}
         pyfuncitem.funcargs["run"](pyfuncitem.function(**given))
         return True
-
-
-def pytest_xdist_auto_num_workers(config):
-    """One more than there are cores: browsers and kernels are often waited for."""
-    return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_modifyitems(config, items):

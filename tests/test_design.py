@@ -335,6 +335,7 @@ SYMMETRIC = {
 }
 
 
+@pytest.mark.elsewhere
 @pytest.mark.parametrize("name", SYMMETRIC)
 @pytest.mark.parametrize(
     ("pair", "direction"), [((60, 60), 0), ((90, 90), 45), ((90, 60), 90), ((75, 50), 0)]

@@ -69,6 +69,7 @@ def pairs(array):
     return np.stack([array.real, array.imag], -1) if np.iscomplexobj(array) else array
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("name", STORED)
 def test_the_stored_figure_is_what_is_drawn(name):
     drawing, entry = drawn(name), STORED[name]

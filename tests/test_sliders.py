@@ -30,6 +30,7 @@ def pixels(png):
     return np.asarray(PIL.Image.open(io.BytesIO(png)).convert("RGB"), dtype=int)
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("draw", RANGES)
 def test_a_slider_redraws_the_figure_and_a_tool_gets_the_first_one(draw):
     still = sliders.slide(draw, live=False, **RANGES[draw])
