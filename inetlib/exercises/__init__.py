@@ -35,6 +35,7 @@ from pkgutil import iter_modules
 from . import tour
 from .engine import Checked, Exercise, judge
 
+WIDTH = 72  # of what is printed, so that a page of the book shows it whole
 solved: set[str] = set()  # the names, in this process
 
 
@@ -67,13 +68,13 @@ def check(name: str, answer: object = None) -> Checked:
     else:
         checked = judge(find(name), answer)
         solved.update([str(name)] if checked.right else [])
-    print(textwrap.fill(f"{name}: {checked.message}", 92, subsequent_indent="  "))
+    print(textwrap.fill(f"{name}: {checked.message}", WIDTH, subsequent_indent="  "))
     return checked
 
 
 def hint(name: str) -> None:
     """Print the hint of an exercise."""
-    print(textwrap.fill(f"{name}: {find(name).hint}", 92, subsequent_indent="  "))
+    print(textwrap.fill(f"{name}: {find(name).hint}", WIDTH, subsequent_indent="  "))
 
 
 def report() -> None:
