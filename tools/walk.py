@@ -64,6 +64,9 @@ def main(plans):
     from nbclient.exceptions import CellExecutionError
 
     late, before, opened = 0, None, {}
+    if wrong := set(plans) - set(PLANS):
+        print(f"no plan is called {sorted(wrong)[0]!r}: {' or '.join(PLANS)}", file=sys.stderr)
+        return 2
     for plan in plans or PLANS:
         for lecture, start, stop, title, shown in parts(plan):
             if lecture != before:
