@@ -46,6 +46,10 @@ HELP = {  # what a command does, and examples
     "optimize": """Change a quad mesh into a net with the angles you want.
         inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
         inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj""",
+    "schedule": """Tables of a net's panels, nodes and bars, for whoever builds it.
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
+        inet schedule vase.obj -o panels.csv
+        inet schedule vase.obj --tolerance 0.02 -o 'alike panels.csv' --json""",
     "explore": """Turn the angles of a net in the browser, on this machine only.
         inet explore
         inet explore roof.obj --port 8000 --open""",
@@ -313,6 +317,39 @@ def _optimize(given):
     return _finish(given, found.V, Q, polygons, about, notes, more)
 
 
+def _schedule_options(command):
+    add = command.add_argument
+    command.set_defaults(theta=None, theta0=None)
+    text = "a quad mesh, with cut panels or without: .obj, .ply, .off, .vtp or .3dm"
+    add("net", help=text)
+    text = """the panels, NAME.csv; the nodes and the bars are written beside it, as NAME_nodes.csv
+        and NAME_bars.csv"""
+    add("-o", "--output", required=True, metavar="FILE", help=text)
+    text = """panels are of one type when their edges, their diagonals and how far their corners
+        are out of plane differ by this length at most from those of its first panel; mirror
+        images are of two types (%(default)s)"""
+    add("--tolerance", type=_positive, default="0.001", metavar="LENGTH", help=text)
+    add("--force", action="store_true", help="replace the three files if they are there")
+    _say_options(command)
+
+
+def _schedule(given):
+    from . import io, schedule
+
+    written = [str(path) for path in schedule.places(given.output, given.force)]
+    V, Q, polygons, notes = _read_net(given, False, "no theta, theta0 and families are given")
+    with io.named(given.net, V, counted=False):
+        found = schedule.schedule(V, Q, polygons, given.tolerance)
+    schedule.write(given.output, found, given.force)
+    if given.json:
+        known = {"file": written[0], "files": written, **schedule.numbers(found), "notes": notes}
+        print(json.dumps(known, indent=2, allow_nan=False))
+    elif not given.quiet:
+        lines = [*written, *(f"note: {note}" for note in notes), schedule.text(found)]
+        print("\n".join(lines))
+    return DONE
+
+
 def _explore_options(command):
     add = command.add_argument
     add("surface", nargs="?", help="a surface to cover, as for `inet cover` (without: examples)")
@@ -405,7 +442,7 @@ def _course(given):
     return DONE
 
 
-def _read_net(given, must_label=True):
+def _read_net(given, must_label=True, without="the numbers are those of the labels in the file"):
     """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
     from . import io, measure, mesh, repair
 
@@ -421,7 +458,7 @@ def _read_net(given, must_label=True):
     except ValueError as reason:
         if must_label:
             raise
-        notes += [f"{reason}; the numbers are those of the labels in the file"]
+        notes += [f"{reason}; {without}"]
     with io.named(*as_read):
         measure.quality(V, labelled)  # refuses collapsed faces
     return V, labelled, polygons, notes + _turned(V, labelled, given.theta, given.theta0)
@@ -496,6 +533,7 @@ COMMANDS = {
     "cover": (_cover, _cover_options),
     "web": (_web, _web_options),
     "optimize": (_optimize, _optimize_options),
+    "schedule": (_schedule, _schedule_options),
     "explore": (_explore, _explore_options),
     "figures": (_figures, _figures_options),
     "course": (_course, _course_options),
