@@ -36,7 +36,7 @@ HELP = {  # what a command does, and examples
     "measure": """How well a quad mesh keeps two angles, and its quality.
         inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
         inet measure web.obj --theta 60 --theta0 45
-        inet measure web.obj --json""",
+        inet measure web.obj --json --planar-report 0.01""",
     "cover": """Cover a surface from a file with a net of two given angles.
         inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj
         inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json""",
@@ -157,11 +157,17 @@ def _write_options(command, keep):
     add("--up", choices=("z", "y"), default="z", help="the axis upwards in the file (%(default)s)")
     text = "in .dxf files: one mesh, or faces that more programs read (%(default)s)"
     add("--dxf", choices=("mesh", "3dface"), default="mesh", help=text)
+    _planar_option(command)
     if keep:
         text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
         add("--tolerance", type=_tolerance, default=least, metavar="DEG", help=text)
         add("--keep", action="store_true", help="write the best net even if it is off its angles")
     _say_options(command)
+
+
+def _planar_option(command):
+    text = "name the panels that are more than this length out of plane, the 20 worst at most"
+    command.add_argument("--planar-report", type=_positive, metavar="LENGTH", help=text)
 
 
 def _say_options(command, numbers=True):
@@ -173,6 +179,7 @@ def _say_options(command, numbers=True):
 def _measure_options(command):
     command.add_argument("net", help="a quad mesh: .obj, .ply, .off, .vtp or .3dm")
     _angle_options(command, "; deviations are from it, or from the mean without it")
+    _planar_option(command)
     _say_options(command)
 
 
@@ -180,7 +187,8 @@ def _measure(given):
     V, Q, polygons, notes = _read_net(given, must_label=False)
     from . import mesh
 
-    _say(given, _report(given, V, Q, polygons), given.net, notes, labelled=mesh.is_labelled(Q))
+    more = {"labelled": mesh.is_labelled(Q), **_out_of_plane(given, V, Q, polygons)}
+    _say(given, _report(given, V, Q, polygons), given.net, notes, **more)
     return DONE
 
 
@@ -486,6 +494,14 @@ def _report(given, V, Q, polygons=()):
     return report.report(V, Q, polygons, **wanted)
 
 
+def _out_of_plane(given, V, Q, polygons):
+    """What --planar-report asks for, by its name in JSON."""
+    from .design import report
+
+    beyond = given.planar_report
+    return {"out_of_plane": report.out_of_plane(V, Q, polygons, beyond)} if beyond else {}
+
+
 def _style(given):
     """How the file is written: unit, faces, up."""
     return given.unit, given.dxf == "3dface", given.up
@@ -501,6 +517,7 @@ def _finish(given, V, Q, polygons, about, notes, more):
         suffix = Path(given.output).suffix.lower()
         curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
         io.write(given.output, V, Q, curves, polygons, given.force, *_style(given))
+    more |= _out_of_plane(given, V, Q, polygons)
     _say(given, about, given.output if written else None, notes, **more)
     if good:
         return DONE
@@ -522,6 +539,8 @@ def _say(given, about, file, notes, **more):
         for note in notes:
             print("note:", note)
         print(report.text(about))
+        if "out_of_plane" in known:
+            print(report.bent_text(known["out_of_plane"]))
 
 
 def _progress(given):
