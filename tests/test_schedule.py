@@ -333,6 +333,15 @@ def test_the_command_takes_meshes_without_labels(inet):  # noqa: F811
     assert "odd" in about["notes"][0] and "no theta" in about["notes"][0]
 
 
+def test_corners_at_one_place_are_one_and_a_panel_that_has_none_left_is_gone(inet):  # noqa: F811
+    near = [[3, 0.5, 0], [3, 0.5 + 1e-9, 0], [2 + 1e-9, 0, 0]]
+    V, polygons = np.concatenate([GRID, near]), [[3, 2, 4, 6, 7, 5], [4, 2, 8]]
+    io.write("net.obj", V, mesh.grid_quads(1, 1), polygons=polygons)
+    about = numbers(inet("schedule", "net.obj", "-o", "a.csv", "--json"))
+    assert about["notes"] == ["duplicate vertices merged: 2"] and about["cut"] == 1
+    assert read("a.csv")[1]["area"] == "1.5" and cells(read("a.csv")[1], "node", int)[:4]
+
+
 def test_measure_names_the_panels_that_are_out_of_plane(inet):  # noqa: F811
     V, Q, polygons = trimmed(lambda x, y: 0.05 * x * x * y)
     io.write("net.obj", V, Q, polygons=polygons)
