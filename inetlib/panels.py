@@ -123,14 +123,14 @@ def types(V: np.ndarray, panels: Sequence, tolerance: float) -> np.ndarray:
         P, found = V[corners], np.full(len(numbers), -1)
         chords = [np.linalg.norm(np.roll(P, -s, axis=1) - P, axis=2) for s in range(1, k // 2 + 1)]
         X = np.stack([*chords, height[first[numbers][:, None] + np.arange(k)]], axis=1)
-        rows = np.sort(X, axis=2).reshape(
-            len(X), -1
-        )  # they differ by no more than X, turned or not
-        tree = cKDTree(rows)
+        rows = np.sort(X, axis=2).reshape(len(X), -1)  # differ no more than X, however it is turned
+        tree, reach = cKDTree(rows), tolerance * (1 + 2 * ties.TIE)
         for i in range(len(numbers)):
             if found[i] < 0:
-                near = tree.query_ball_point(rows[i], tolerance * (1 + 2 * ties.TIE), p=np.inf)
-                near = np.array(near)[found[near] < 0]
+                near = np.array(tree.query_ball_point(rows[i], reach, p=np.inf))
+                near, found[i] = near[found[near] < 0], i
+                if len(near) == 1:
+                    continue
                 turned = (np.roll(X[near], s, axis=2) for s in range(k))
                 off = np.min([np.abs(Y - X[i]).max(axis=(1, 2)) for Y in turned], axis=0)
                 found[near[ties.at_most(off, tolerance)]] = i

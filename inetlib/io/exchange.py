@@ -50,8 +50,9 @@ for one in meshes:
         number = [known[p] for p in corners]
         points += new
     else:
-        known = {**dict(zip(reversed(corners), reversed(number))), **known}
         points += corners
+        for k, p in zip(number, corners):
+            known.setdefault(p, k)
     sizes += [len(face) for face in faces]
     padded += [k for face in faces for k in (len(face), *(number[c] for c in face))]
 numpy.savez(sys.stdout.buffer, points=points, padded=padded, sizes=sizes, cut=cut)"""
