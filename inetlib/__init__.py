@@ -9,8 +9,8 @@ from importlib import import_module
 
 __all__ = [
     "NotConverged", "conformal", "design", "developable", "examples", "exercises", "io",
-    "loxodrome", "measure", "mesh", "moebius", "motif", "parallelogram", "planar",
-    "reference", "repair", "solver", "surfaces",
+    "loxodrome", "measure", "mesh", "moebius", "motif", "panels", "parallelogram", "planar",
+    "reference", "repair", "schedule", "solver", "surfaces",
 ]  # fmt: skip
 
 

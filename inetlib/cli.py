@@ -36,7 +36,7 @@ HELP = {  # what a command does, and examples
     "measure": """How well a quad mesh keeps two angles, and its quality.
         inet web --profile sphere --theta 60 --theta0 45 -m 36 -o web.obj
         inet measure web.obj --theta 60 --theta0 45
-        inet measure web.obj --json""",
+        inet measure web.obj --json --planar-report 0.01""",
     "cover": """Cover a surface from a file with a net of two given angles.
         inet cover roof --theta 60 --theta0 60 --quads 1500 -o net.obj
         inet cover saddle --theta 90 --theta0 90 --direction 30 -o 'my net.ply' --json""",
@@ -46,6 +46,10 @@ HELP = {  # what a command does, and examples
     "optimize": """Change a quad mesh into a net with the angles you want.
         inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
         inet optimize vase.obj --theta 80 --theta0 70 --reference vase.obj -o other.obj""",
+    "schedule": """Tables of a net's panels, nodes and bars, for whoever builds it.
+        inet web --profile vase --theta 75 --theta0 60 -m 24 -n 12 -o vase.obj
+        inet schedule vase.obj -o panels.csv
+        inet schedule vase.obj --tolerance 0.02 -o 'alike panels.csv' --json""",
     "explore": """Turn the angles of a net in the browser, on this machine only.
         inet explore
         inet explore roof.obj --port 8000 --open""",
@@ -153,11 +157,17 @@ def _write_options(command, keep):
     add("--up", choices=("z", "y"), default="z", help="the axis upwards in the file (%(default)s)")
     text = "in .dxf files: one mesh, or faces that more programs read (%(default)s)"
     add("--dxf", choices=("mesh", "3dface"), default="mesh", help=text)
+    _planar_option(command)
     if keep:
         text, least = "the angles count as met within so many degrees (%(default)s)", "6e-10"
         add("--tolerance", type=_tolerance, default=least, metavar="DEG", help=text)
         add("--keep", action="store_true", help="write the best net even if it is off its angles")
     _say_options(command)
+
+
+def _planar_option(command):
+    text = "name the panels that are more than this length out of plane, the 20 worst at most"
+    command.add_argument("--planar-report", type=_positive, metavar="LENGTH", help=text)
 
 
 def _say_options(command, numbers=True):
@@ -169,6 +179,7 @@ def _say_options(command, numbers=True):
 def _measure_options(command):
     command.add_argument("net", help="a quad mesh: .obj, .ply, .off, .vtp or .3dm")
     _angle_options(command, "; deviations are from it, or from the mean without it")
+    _planar_option(command)
     _say_options(command)
 
 
@@ -176,7 +187,8 @@ def _measure(given):
     V, Q, polygons, notes = _read_net(given, must_label=False)
     from . import mesh
 
-    _say(given, _report(given, V, Q, polygons), given.net, notes, labelled=mesh.is_labelled(Q))
+    more = {"labelled": mesh.is_labelled(Q), **_out_of_plane(given, V, Q, polygons)}
+    _say(given, _report(given, V, Q, polygons), given.net, notes, **more)
     return DONE
 
 
@@ -313,6 +325,39 @@ def _optimize(given):
     return _finish(given, found.V, Q, polygons, about, notes, more)
 
 
+def _schedule_options(command):
+    add = command.add_argument
+    command.set_defaults(theta=None, theta0=None)
+    text = "a quad mesh, with cut panels or without: .obj, .ply, .off, .vtp or .3dm"
+    add("net", help=text)
+    text = """the panels, NAME.csv; the nodes and the bars are written beside it, as NAME_nodes.csv
+        and NAME_bars.csv"""
+    add("-o", "--output", required=True, metavar="FILE", help=text)
+    text = """panels are of one type when their edges, their diagonals and how far their corners
+        are out of plane differ by this length at most from those of its first panel; mirror
+        images are of two types (%(default)s)"""
+    add("--tolerance", type=_positive, default="0.001", metavar="LENGTH", help=text)
+    add("--force", action="store_true", help="replace the three files if they are there")
+    _say_options(command)
+
+
+def _schedule(given):
+    from . import io, schedule
+
+    written = [str(path) for path in schedule.places(given.output, given.force)]
+    V, Q, polygons, notes = _read_net(given, False, "no theta, theta0 and families are given")
+    with io.named(given.net, V, counted=False):
+        found = schedule.schedule(V, Q, polygons, given.tolerance)
+    schedule.write(given.output, found, given.force)
+    if given.json:
+        known = {"file": written[0], "files": written, **schedule.numbers(found), "notes": notes}
+        print(json.dumps(known, indent=2, allow_nan=False))
+    elif not given.quiet:
+        lines = [*written, *(f"note: {note}" for note in notes), schedule.text(found)]
+        print("\n".join(lines))
+    return DONE
+
+
 def _explore_options(command):
     add = command.add_argument
     add("surface", nargs="?", help="a surface to cover, as for `inet cover` (without: examples)")
@@ -405,7 +450,7 @@ def _course(given):
     return DONE
 
 
-def _read_net(given, must_label=True):
+def _read_net(given, must_label=True, without="the numbers are those of the labels in the file"):
     """(V, Q, polygons, notes) of a net's file, labelled; if that fails, ValueError or a note."""
     from . import io, measure, mesh, repair
 
@@ -421,7 +466,7 @@ def _read_net(given, must_label=True):
     except ValueError as reason:
         if must_label:
             raise
-        notes += [f"{reason}; the numbers are those of the labels in the file"]
+        notes += [f"{reason}; {without}"]
     with io.named(*as_read):
         measure.quality(V, labelled)  # refuses collapsed faces
     return V, labelled, polygons, notes + _turned(V, labelled, given.theta, given.theta0)
@@ -449,6 +494,14 @@ def _report(given, V, Q, polygons=()):
     return report.report(V, Q, polygons, **wanted)
 
 
+def _out_of_plane(given, V, Q, polygons):
+    """What --planar-report asks for, by its name in JSON."""
+    from .design import report
+
+    beyond = given.planar_report
+    return {"out_of_plane": report.out_of_plane(V, Q, polygons, beyond)} if beyond else {}
+
+
 def _style(given):
     """How the file is written: unit, faces, up."""
     return given.unit, given.dxf == "3dface", given.up
@@ -464,6 +517,7 @@ def _finish(given, V, Q, polygons, about, notes, more):
         suffix = Path(given.output).suffix.lower()
         curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
         io.write(given.output, V, Q, curves, polygons, given.force, *_style(given))
+    more |= _out_of_plane(given, V, Q, polygons)
     _say(given, about, given.output if written else None, notes, **more)
     if good:
         return DONE
@@ -485,6 +539,8 @@ def _say(given, about, file, notes, **more):
         for note in notes:
             print("note:", note)
         print(report.text(about))
+        if "out_of_plane" in known:
+            print(report.bent_text(known["out_of_plane"]))
 
 
 def _progress(given):
@@ -496,6 +552,7 @@ COMMANDS = {
     "cover": (_cover, _cover_options),
     "web": (_web, _web_options),
     "optimize": (_optimize, _optimize_options),
+    "schedule": (_schedule, _schedule_options),
     "explore": (_explore, _explore_options),
     "figures": (_figures, _figures_options),
     "course": (_course, _course_options),

@@ -268,8 +268,9 @@ def welded(V: np.ndarray, Q: np.ndarray, polygons: Sequence = ()) -> tuple:
         return V, Q, polygons, [_unmerged(error, V)]
     used, joined = np.unique(joined, return_inverse=True)
     parts = np.split(joined, np.cumsum([Q.size, *map(len, polygons)])[:-1])
+    left = [np.array(face) for face in without_repeats(parts[1:]) if len(face) > 2]
     said = _counted({"duplicate vertices merged": count})
-    return V[used], parts[0].reshape(Q.shape), parts[1:], said
+    return V[used], parts[0].reshape(Q.shape), left, said
 
 
 def triangulate(V: np.ndarray, F: Sequence) -> np.ndarray:

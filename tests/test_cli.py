@@ -92,6 +92,8 @@ def test_help_and_wrong_input_load_nothing_slow(tmp_path):
         f"optimize none.obj {angles} -o a.obj",
         f"optimize old.obj {angles} -o old.obj",
         f"web --profile none {angles} -m 9 -o a.obj",
+        "schedule none.obj -o a.csv",
+        "schedule old.obj -o a.csv",
         "explore none.obj",
         "figures fig99",
         "course grade none",

@@ -88,9 +88,10 @@ def test_nets_and_triangles_come_back_bit_by_bit(tmp_path, web, suffix):
 def test_libigl_reads_the_same_obj_and_off(tmp_path, web):
     V, Q, _ = web
     for name, read, faces in (("n.obj", igl.readOBJ, 3), ("n.off", igl.readOFF, 1)):
-        io.write(tmp_path / name, V, Q)
-        found = read(str(tmp_path / name))
-        assert np.array_equal(found[0], V) and np.array_equal(found[faces], Q)
+        for cut in ([], [Q[-1]]):
+            io.write(tmp_path / name, V, Q[: len(Q) - len(cut)], polygons=cut, force=True)
+            found = read(str(tmp_path / name))
+            assert np.array_equal(found[0], V) and np.array_equal(found[faces], Q)
 
 
 @pytest.mark.parametrize("suffix", [".obj", ".ply"])
@@ -160,9 +161,9 @@ def test_glb_is_read_by_vtk_with_lines_and_y_up(tmp_path, web):
     while not walk.IsDoneWithTraversal():
         parts.append(walk.GetCurrentDataObject())
         walk.GoToNextItem()
-    assert [part.GetNumberOfPolys() for part in parts] == [2 * len(Q) + 4, 0, 0, 0, 0]
+    assert [part.GetNumberOfPolys() for part in parts] == [2 * len(Q), 4, 0, 0, 0, 0]
     edges = [sum(len(c) - 1 for c in family) for family in mesh.polylines(Q)]
-    assert [part.GetNumberOfLines() for part in parts[1:]] == edges
+    assert [part.GetNumberOfLines() for part in parts[2:]] == edges
     x, y, z = parts[0].GetPoint(5)
     assert np.allclose([x, -z, y], V[5], atol=1e-6)
 
@@ -264,10 +265,12 @@ def test_dxf_passes_ezdxf_audit_and_keeps_all(tmp_path, web):
     audit = drawing.audit()
     assert not audit.errors and not audit.fixes
     space = drawing.modelspace()
-    (panels,) = space.query("MESH")
-    assert panels.dxf.layer == "panels"
+    panels, hexagon = space.query("MESH")
+    assert (panels.dxf.layer, hexagon.dxf.layer) == ("panels", "panels_cut")
     assert np.array_equal(np.array(panels.vertices), V)
-    assert [list(face) for face in panels.faces] == [*Q.tolist(), polygon.tolist()]
+    assert [list(face) for face in panels.faces] == Q.tolist()
+    (corners,) = hexagon.faces
+    assert np.array_equal(np.array(hexagon.vertices)[list(corners)], V[polygon])
     for name, family in ring._asdict().items():
         found = list(space.query(f'POLYLINE[layer=="{name}"]'))
         assert len(found) == len(family)
@@ -284,11 +287,11 @@ def test_3dm_keeps_quads_and_double_precision(tmp_path, web):
     io.write(tmp_path / "a net.3dm", V, Q, families, [polygon])
     model = rhino.File3dm.Read(str(tmp_path / "a net.3dm"))
     names = [layer.Name for layer in model.Layers]
-    assert names == ["panels", "u", "v", "d1", "d2"]
+    assert names == ["panels", "panels_cut", "u", "v", "d1", "d2"]
     found = {name: [] for name in names}
     for item in model.Objects:
         found[names[item.Attributes.LayerIndex]].append(item.Geometry)
-    panels, hexagon = found["panels"]
+    (panels,), (hexagon,) = found["panels"], found["panels_cut"]
     assert panels.IsValid and len(hexagon.Faces) == 4
     points = [panels.Vertices.Point3dAt(k) for k in range(len(panels.Vertices))]
     assert np.array_equal([[p.X, p.Y, p.Z] for p in points], V)
@@ -298,6 +301,132 @@ def test_3dm_keeps_quads_and_double_precision(tmp_path, web):
         for line, curve in zip(found[name], family, strict=True):
             points = [line.Point(k) for k in range(line.PointCount)]
             assert np.array_equal([[p.X, p.Y, p.Z] for p in points], V[curve])
+
+
+@pytest.fixture
+def trimmed():
+    """2 x 2 whole quads, and cut panels of 3, 4, 5 and 6 corners, the last with a hollow."""
+    V = np.stack([*np.mgrid[:3, :3].reshape(2, -1), np.linspace(0, THIRD, 9) ** 2], axis=1)
+    more = [2, 3, 1e-3], [1, 2.5, THIRD], [2, 2.6, 0.1], [0, 2.5, 0], [2.5, 0, 0], [2.9, 0.4, 0]
+    more = [*more, [3, 1.5, 0.2], [2.4, 0.6, 0.1], [2.5, 2, 0.1]]
+    polygons = [[8, 17, 11, 9], [8, 11, 5], [2, 5, 8, 10, 12], [7, 6, 13, 16, 14, 15]]
+    return np.concatenate([V, more]), mesh.grid_quads(2, 2), [np.array(p) for p in polygons]
+
+
+def shoelace(x, y):
+    """Twice the areas of the polygons of corners x, y (..., k) in the plane."""
+    return np.sum(x * np.roll(y, -1, axis=-1) - y * np.roll(x, -1, axis=-1), axis=-1)
+
+
+def rebuilt(faces):
+    """The faces, each as a tuple from its smallest corner on: order and orientation count."""
+    lists = [[int(k) for k in face] for face in faces]
+    return [tuple(f[f.index(min(f)) :] + f[: f.index(min(f))]) for f in lists]
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".off", ".vtp", ".3dm"])
+def test_cut_panels_come_back_as_such_and_those_of_four_corners_are_no_quads(
+    tmp_path, trimmed, suffix
+):
+    need(suffix)
+    V, Q, polygons = trimmed
+    path = tmp_path / f"trimmed{suffix}"
+    io.write(path, V, Q, "all" if suffix in io.WITH_CURVES else None, polygons)
+    net = io.net(path)
+    assert np.array_equal(net.V, V) and np.array_equal(net.Q, Q)
+    assert [p.tolist() for p in net.polygons] == [p.tolist() for p in polygons]
+    io.write(path, V, Q, None, polygons[:1], force=True)  # all faces have four corners
+    net = io.net(path)
+    assert np.array_equal(net.Q, Q) and rebuilt(net.polygons) == rebuilt(polygons[:1])
+    assert len(io.read(path)[1]) == len(Q) + 1
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply"])
+def test_meshio_reads_quads_and_then_cut_panels(tmp_path, trimmed, suffix):
+    meshio = package("meshio")
+    V, Q, polygons = trimmed
+    io.write(tmp_path / f"n{suffix}", V, Q, None, polygons)
+    found = meshio.read(tmp_path / f"n{suffix}")
+    assert np.array_equal(found.points, V)
+    faces = [face.tolist() for block in found.cells for face in block.data]
+    assert faces == [*Q.tolist(), *(p.tolist() for p in polygons)]
+
+
+def test_off_and_vtp_have_quads_and_then_cut_panels(tmp_path, trimmed):
+    V, Q, polygons = trimmed
+    expected = [*Q.tolist(), *(p.tolist() for p in polygons)]
+    io.write(tmp_path / "n.off", V, Q, None, polygons)
+    lines = (tmp_path / "n.off").read_text().splitlines()
+    lines = [line for line in lines if not line.startswith("#")]
+    assert lines[1] == f"{len(V)} {len(expected)} 0"
+    assert [[*map(int, line.split()[1:])] for line in lines[2 + len(V) :]] == expected
+    pyvista = package("pyvista")
+    io.write(tmp_path / "n.vtp", V, Q, "all", polygons)
+    found = pyvista.read(tmp_path / "n.vtp")
+    assert [face.tolist() for face in found.irregular_faces] == expected
+    assert found.cell_data["family"][-len(expected) :].tolist() == [-1] * 4 + [-2] * 4
+
+
+@pytest.mark.parametrize("faces", [False, True])
+def test_dxf_has_cut_panels_in_a_layer_of_their_own(tmp_path, trimmed, faces):
+    ezdxf = package("ezdxf")
+    V, Q, polygons = trimmed
+    io.write(tmp_path / "n.dxf", V, Q, "all", polygons, faces=faces)
+    drawing = ezdxf.readfile(tmp_path / "n.dxf")
+    assert not drawing.audit().errors
+    space = drawing.modelspace()
+    if faces:
+        found = {name: space.query(f'3DFACE[layer=="{name}"]') for name in ("panels", "panels_cut")}
+        assert [len(some) for some in found.values()] == [4, 1 + 2 + 3 + 4]
+        corners = np.array([[*map(tuple, f.wcs_vertices()[:3])] for f in found["panels_cut"]])
+    else:
+        panels, cut = space.query("MESH")
+        assert (panels.dxf.layer, cut.dxf.layer) == ("panels", "panels_cut")
+        points = np.array(cut.vertices)
+        got = [points[list(face)].tolist() for face in cut.faces]
+        assert got == [V[p].tolist() for p in polygons]
+        corners = np.array(panels.vertices)[np.array([list(face) for face in panels.faces])]
+        assert np.array_equal(corners, V[Q])
+        return
+    twice = shoelace(corners[..., 0], corners[..., 1])
+    whole = sum(shoelace(*V[p, :2].T) for p in polygons)
+    assert (twice > -1e-6).all() and twice.sum() == pytest.approx(whole, rel=1e-12)
+
+
+def test_3dm_has_each_cut_panel_as_a_mesh_in_their_layer(tmp_path, trimmed):
+    rhino = package("rhino3dm")
+    V, Q, polygons = trimmed
+    io.write(tmp_path / "n.3dm", V, Q, "all", polygons)
+    model = rhino.File3dm.Read(str(tmp_path / "n.3dm"))
+    layer = [layer.Name for layer in model.Layers].index("panels_cut")
+    found = [m.Geometry for m in model.Objects if m.Attributes.LayerIndex == layer]
+    for one, polygon in zip(found, polygons, strict=True):
+        corners = [one.Vertices.Point3dAt(k) for k in range(len(one.Vertices))]
+        assert np.array_equal([[p.X, p.Y, p.Z] for p in corners], V[polygon])
+        assert len(one.Faces) == len(polygon) - 2 and one.IsValid
+
+
+def test_glb_has_cut_panels_as_a_mesh_of_triangles(tmp_path, trimmed):
+    V, Q, polygons = trimmed
+    io.write(tmp_path / "n.glb", V, Q, "all", polygons)
+    data = (tmp_path / "n.glb").read_bytes()
+    length = int.from_bytes(data[12:16], "little")
+    scene, body = json.loads(data[20 : 20 + length]), data[28 + length :]
+    parts = {one["name"]: one["primitives"][0] for one in scene["meshes"]}
+    assert [*parts] == ["panels", "panels_cut", "u", "v", "d1", "d2"]
+    assert [part["mode"] for part in parts.values()] == [4, 4, 1, 1, 1, 1]
+
+    def numbers(accessor, kind):
+        view = scene["bufferViews"][scene["accessors"][accessor]["bufferView"]]
+        return np.frombuffer(body, kind, view["byteLength"] // 4, view["byteOffset"])
+
+    part = parts["panels_cut"]
+    corners = numbers(part["indices"], "<u4").reshape(-1, 3)
+    assert len(corners) == 1 + 2 + 3 + 4
+    points = numbers(part["attributes"]["POSITION"], "<f4").reshape(-1, 3)[corners]
+    twice = shoelace(points[..., 0], -points[..., 2])  # what was y is -z
+    whole = sum(shoelace(*V[p, :2].T) for p in polygons)
+    assert (twice > -1e-6).all() and twice.sum() == pytest.approx(whole, rel=1e-5)
 
 
 def test_a_rhino_file_without_a_mesh_says_what_to_do(tmp_path):

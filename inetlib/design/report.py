@@ -6,7 +6,7 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from .. import measure, mesh, reference
+from .. import measure, mesh, panels, reference, ties
 from ..reference import Reference
 from .flatten import Flat
 
@@ -14,6 +14,7 @@ NAMES = "lam", "mu", "theta", "theta0"
 SHAPE = "flips", "darts", "corner", "area_ratio", "aspect", "planarity"
 COVERED = 0.8  # of the surface: a net that leaves out more says so
 FAR = 2  # longest edges between the net and a part of the surface that is left out
+SHOWN = 20  # panels that are named at most
 SHRUNK = 20  # scales of the map that differ more leave parts out, however small the quads
 
 
@@ -41,6 +42,8 @@ class Report(NamedTuple):
     edge_mean: float
     edge_high: float
     size_ratio: float  # longest / shortest d1: how much the similar parallelograms differ in size
+    smallest: tuple  # the middle (x, y, z) of the first quad with the shortest d1
+    largest: tuple  # the same of the longest
     converged: bool = None  # all angles within the tolerance, no face flipped or a dart
     message: str = None  # the same in words
     distance_mean: float = None  # from the net's vertices to the surface, in diagonals
@@ -83,8 +86,10 @@ def report(
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
+    ends = ties.first_smallest(d1), ties.first_largest(d1)
+    where = (tuple(V[Q[k]].mean(axis=0).tolist()) for k in ends)
     counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
-    known = (*counts, wanted, *spreads, *shape, *sizes)
+    known = (*counts, wanted, *spreads, *shape, *sizes, *where)
     return Report(*known)
 
 
@@ -122,6 +127,21 @@ def survey(
         surface_flips=flat.flips,
         notes=tuple(notes),
     )
+
+
+def out_of_plane(V: np.ndarray, Q: np.ndarray, polygons: Sequence, beyond: float) -> dict:
+    """The panels whose planarity (`panels.Shapes`) is larger than the length `beyond`, for JSON.
+
+    beyond, count, and panels: of the 20 worst, the worst first, number as in `schedule`, from 1
+    on and quads first, planarity and place.  ValueError for panels without area."""
+    shape = panels.shapes(V, [*Q, *polygons])
+    found = np.flatnonzero(~ties.at_most(shape.planarity, beyond))
+    rank = ties.ranks(-shape.planarity[found], ties.TIE * beyond)
+    worst = [
+        {"panel": k + 1, "planarity": float(shape.planarity[k]), "place": shape.centre[k].tolist()}
+        for k in found[np.argsort(rank, kind="stable")[:SHOWN]].tolist()
+    ]
+    return {"beyond": beyond, "count": len(found), "panels": worst}
 
 
 def area_of(V: np.ndarray, F: np.ndarray) -> float:
@@ -164,14 +184,37 @@ def text(report: Report) -> str:
         f"degrees, smallest area {r.area_ratio:.3g} of the largest, aspect {r.aspect:.3g} at "
         f"most, planarity {r.planarity:.3g}"
     )
+    lines.append(_sizes(r))
     if r.converged is not None:
         lines += [
             f"distance to the surface {100 * r.distance_mean:.2g} % of its diagonal on average, "
             f"{100 * r.distance_max:.2g} % at most; back from it {100 * r.back_max:.2g} % at most",
             f"{100 * r.covered:.0f} % of the surface is covered; edges {r.edge_low:.3g} to "
             f"{r.edge_high:.3g}, mean {r.edge_mean:.3g}",
-            f"largest quad / smallest {r.size_ratio:.3g}; conformal map: distortion "
-            f"{r.distortion_mean:.3f} on average, {r.distortion_max:.3f} at most",
+            f"conformal map: distortion {r.distortion_mean:.3f} on average, "
+            f"{r.distortion_max:.3f} at most",
             f"{sum(r.seconds.values()):.2f} seconds",
         ]
+    return "\n".join(lines)
+
+
+def _sizes(r):
+    """Where quads are smallest and largest, and how many would have to be there instead."""
+    if ties.at_most(r.size_ratio, 1):
+        return "all quads are of one size"
+    wanted = float(f"{r.quads * r.size_ratio**2:.3g}")
+    return (
+        f"quads are smallest near {mesh.place(r.smallest)} and {r.size_ratio:.3g} times as large "
+        f"near {mesh.place(r.largest)}: with about {wanted:.10g} quads, not {r.quads}, none would "
+        "be larger than the smallest is now"
+    )
+
+
+def bent_text(found: dict) -> str:
+    """What `out_of_plane` has found, a line a panel."""
+    lines = [f"panels more than {found['beyond']:g} out of plane: {found['count']}"]
+    lines[0] += f", the worst {SHOWN} of them:" * (found["count"] > SHOWN)
+    for one in found["panels"]:
+        where = mesh.place(one["place"])
+        lines.append(f"panel {one['panel']}: {one['planarity']:.3g} near {where}")
     return "\n".join(lines)

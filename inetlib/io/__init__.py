@@ -55,7 +55,9 @@ class Surface(NamedTuple):
 
 
 class Net(NamedTuple):
-    """A net from a file: V (n, 3), quads Q (f, 4), polygons: index arrays of all other faces."""
+    """A net from a file: V (n, 3), quads Q (f, 4), polygons: index arrays of all other faces.
+
+    Faces of four corners that `write` was given as polygons are among the polygons again."""
 
     V: np.ndarray
     Q: np.ndarray
@@ -69,7 +71,11 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
     of lists.  Equal points of STL and GLB files are one vertex.  ValueError when the file is
     missing, empty, broken, of another kind than its suffix says, without faces, or has an
     index out of range or a coordinate that is NaN, infinite or beyond 1e100."""
-    path = Path(path)
+    return _read(Path(path))[:2]
+
+
+def _read(path):
+    """V and F as in `read`, and the numbers of the faces that the file calls cut panels."""
     known = _format(path, READERS, "read")
     with named(path), np.errstate(all="ignore"):
         if not path.is_file():
@@ -79,10 +85,11 @@ def read(path: str | Path) -> tuple[np.ndarray, np.ndarray | list]:
         with open(path, "rb") as file:
             if file.read(26) == b"version https://git-lfs.gi":
                 raise ValueError("a pointer of Git LFS, not the file itself: run `git lfs pull`")
-        V, F = _checked(*known.read(path))
+        V, F, *cut = known.read(path)
+        V, F = _checked(V, F)
     if path.suffix.lower() in SOUPS:
-        return repair.weld(V, F)
-    return V, F
+        V, F = repair.weld(V, F)
+    return V, F, {int(k) for numbers in cut for k in numbers}
 
 
 def surface(path: str | Path, merge: bool = True) -> Surface:
@@ -102,15 +109,16 @@ def net(path: str | Path) -> Net:
 
     A corner that repeats the one before is none.  ValueError as in `read`, when no face is a
     quad, and when a face uses a vertex twice."""
-    V, F = read(path)
-    if not isinstance(F, list) and (np.roll(F, 1, axis=1) == F).any():
+    V, F, cut = _read(Path(path))
+    if not isinstance(F, list) and (cut or (np.roll(F, 1, axis=1) == F).any()):
         F = F.tolist()
     if isinstance(F, list):
         F = repair.without_repeats(F)
     Q, others = F, []
     if isinstance(F, list):
-        Q = np.array([face for face in F if len(face) == 4], dtype=np.int64)
-        others = [np.array(face) for face in F if len(face) != 4]
+        whole = [len(face) == 4 and k not in cut for k, face in enumerate(F)]
+        Q = np.array([face for face, yes in zip(F, whole, strict=True) if yes], dtype=np.int64)
+        others = [np.array(face) for face, yes in zip(F, whole, strict=True) if not yes]
     if not len(Q) or Q.shape[1] != 4:
         raise ValueError(f"{path} holds {'polygons' if others else 'triangles'}: quads are wanted")
     with named(path, V):
@@ -216,7 +224,8 @@ def write(
     V         (n, 3) vertices
     Q         (f, 4) quads, or triangles (f, 3)
     curves    `mesh.Families` of vertex index arrays, "all" for mesh.polylines(Q), or None
-    polygons  further faces: index arrays (k,)
+    polygons  further faces, such as cut panels: index arrays (k,) of three or more corners; they
+              come after the quads, in the layer (group, mesh) `panels_cut` where there are any
     force     whether to replace an existing file
     unit      of the coordinates, noted in .dxf and .3dm: "mm", "cm", "m", "in" or "ft"
     faces     in .dxf faces of three or four corners, not one MESH

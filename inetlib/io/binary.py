@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ..repair import triangulate
-from .text import decoded
+from .text import CUT, cut_mark, decoded
 
 PLY_TYPES = {
     "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4",
@@ -16,12 +16,13 @@ PLY_TYPES = {
 PLY_ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
-    """Points (n, 3) and faces of a PLY file, text or binary of either byte order."""
+def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list, range]:
+    """Points (n, 3), faces and cut panels of a PLY file, text or binary of either byte order."""
     head, mark, body = path.read_bytes().partition(b"end_header")
     if not head.startswith(b"ply") or not mark:
         raise ValueError("a PLY file starts with `ply` and a header that ends with `end_header`")
-    form, elements = _ply_header(head.decode("ascii", errors="replace").splitlines())
+    header = head.decode("ascii", errors="replace").splitlines()
+    form, elements = _ply_header(header)
     body = body.partition(b"\n")[2]  # the line may end with CR LF
     if form == "ascii":
         body = np.array(decoded(body).split(), dtype=np.float64).tobytes()
@@ -39,9 +40,11 @@ def read_ply(path: Path) -> tuple[np.ndarray, np.ndarray | list]:
         faces = [run[key] for run in runs["face"]]
     except ValueError:
         raise ValueError(f"the vertices have no x, y and z, or the faces no {key}") from None
+    count = sum(map(len, faces))
+    cut = range(max(count - cut_mark("\n".join(header)), 0), count)
     if len({part.shape[1] for part in faces}) > 1:
-        return np.concatenate(points), [face for part in faces for face in part]
-    return np.concatenate(points), np.concatenate(faces)
+        return np.concatenate(points), [face for part in faces for face in part], cut
+    return np.concatenate(points), np.concatenate(faces), cut
 
 
 def _ply_header(lines):
@@ -93,7 +96,9 @@ def _ply_runs(body, at, count, properties):
 def write_ply(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
     """Write a binary PLY file, coordinates as `double`; it has no place for curves here."""
     size = "uchar" if all(len(polygon) < 256 for polygon in polygons) else "int"
-    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(V)}\n"
+    head = "ply\nformat binary_little_endian 1.0\n"
+    head += f"comment {CUT} {len(polygons)}\n" if polygons else ""
+    head += f"element vertex {len(V)}\n"
     head += "".join(f"property double {x}\n" for x in "xyz")
     head += f"element face {len(Q) + len(polygons)}\n"
     head += f"property list {size} int vertex_indices\nend_header\n"

@@ -11,6 +11,8 @@ from urllib.parse import unquote
 
 import numpy as np
 
+from .text import CUT
+
 TYPES = {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 MOST = 50_000_000  # entries of an accessor
 Y_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])  # x y z -> x z -y
@@ -124,11 +126,14 @@ def _block(scene, data, where, kind, shape):
 
 
 def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write a GLB scene: a mesh `panels` of triangles, one of lines a family; y is upwards."""
+    """Write a GLB scene: meshes `panels` and, of polygons, `panels_cut`, of triangles, and one of
+    lines a family; y is upwards."""
     from ..plot import COLOURS, PALE
     from ..repair import triangulate
 
-    cells = {"panels": triangulate(V, [*Q, *polygons])}
+    cells = {"panels": triangulate(V, Q)}
+    if polygons:
+        cells[CUT] = triangulate(V, polygons)
     for name, family in curves.items():
         cells[name] = np.concatenate([np.stack([c[:-1], c[1:]], axis=1) for c in family])
     middle = (V.min(axis=0) + V.max(axis=0)) / 2  # float32 has no digits to spare far away
@@ -145,7 +150,7 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
         "scenes": [{"nodes": list(range(len(cells)))}],
         "nodes": [{"mesh": k, "name": name} | place for k, name in enumerate(cells)],
         "meshes": [_mesh(k, name) for k, name in enumerate(cells)],
-        "materials": [_material(name, (COLOURS | {"panels": PALE})[name]) for name in cells],
+        "materials": [_material(name, COLOURS.get(name, PALE)) for name in cells],
         "accessors": [kind | {"bufferView": k} for k, kind in enumerate(kinds)],
         "bufferViews": [
             {"buffer": 0, "byteOffset": a, "byteLength": b - a} for a, b in pairwise(starts)
@@ -160,7 +165,8 @@ def write_glb(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
 
 
 def _mesh(k, name):
-    part = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": k, "mode": 1 if k else 4}
+    part = {"attributes": {"POSITION": 0}, "indices": k + 1, "material": k}
+    part["mode"] = 4 if name in ("panels", CUT) else 1
     return {"name": name, "primitives": [part]}
 
 

@@ -1,12 +1,15 @@
 """OBJ and OFF: meshes as lines of text, read strictly and written with every digit.
 
-Readers return points and faces as lists, counted from 0; their ValueErrors name the line."""
+Readers return points and faces as lists, counted from 0, and the numbers of the faces that are
+noted as cut panels; their ValueErrors name the line."""
 
 import re
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+
+CUT = "panels_cut"  # the name of the panels that are no whole quads, in all formats
 
 
 def decoded(data: bytes) -> str:
@@ -51,9 +54,15 @@ def _check_face(face, given, count, first, number):
         raise ValueError(f"line {number}: there is no vertex {bad}, only {first} to {last}")
 
 
-def read_obj(path: Path) -> tuple[list, list]:
-    """Points (n lists of 3) and faces (lists of indices) of an OBJ file, and nothing else of it."""
-    points, faces, lines = [], [], []
+def cut_mark(text: str) -> int:
+    """How many of the last faces a header or a comment notes as cut panels: `panels_cut 12`."""
+    found = re.search(rf"^(?:#|comment) {CUT} (\d{{1,9}})\s*$", text, re.MULTILINE)
+    return int(found[1]) if found else 0
+
+
+def read_obj(path: Path) -> tuple[list, list, list]:
+    """Points (n lists of 3), faces (lists of indices) and cut panels of an OBJ file, no more."""
+    points, faces, lines, cut, group = [], [], [], [], []
     for number, words in _rows(path):
         if words[0] == "v":
             points.append(_numbers(float, words[1:], 3, number, "point of three coordinates"))
@@ -62,26 +71,35 @@ def read_obj(path: Path) -> tuple[list, list]:
             given = _numbers(int, corners, len(corners), number, "face")
             faces.append([k - 1 if k >= 0 else len(points) + k for k in given])
             lines.append((number, given))
+            cut += [len(lines) - 1] * (group == [CUT])
+        elif words[0] in ("g", "o"):
+            group = words[1:]
         elif words[0] in ("surf", "curv", "curv2"):
             raise ValueError(f"line {number}: a free-form surface, no mesh: export it as a mesh")
         elif not words[0][0].isalpha():
             raise ValueError(f"line {number}: {words[0][:40]!r} is no OBJ keyword")
     for face, (number, given) in zip(faces, lines, strict=True):  # vertices may come later
         _check_face(face, given, len(points), 1, number)
-    return points, faces
+    return points, faces, cut
 
 
-def read_off(path: Path) -> tuple[list, list]:
-    """Points (n lists of 3) and faces (lists of indices) of an OFF file; no colours."""
+def read_off(path: Path) -> tuple[list, list, range]:
+    """Points (n lists of 3), faces (lists of indices) and cut panels of an OFF file; no colours."""
     rows = [*_rows(path)] or [(1, [""])]
     number, (kind, *words) = rows[0]
     if not re.fullmatch("[STCN]*OFF", kind.upper()) or "BINARY" in words:
         raise ValueError(f"line {number}: a text OFF file starts with OFF, not {kind[:40]!r}")
     rows = [(number, words)] * bool(words) + rows[1:]  # the counts may follow OFF
+    points, faces = _off_of_any_lines(rows)
+    whole = max(len(faces) - cut_mark(decoded(path.read_bytes())), 0)
+    return points, faces, range(whole, len(faces))
+
+
+def _off_of_any_lines(rows):
     try:
         return _off(rows)
     except ValueError:
-        every = [(number, word) for number, words in rows for word in words]  # any line breaks
+        every = [(number, word) for number, words in rows for word in words]
         with suppress(ValueError):
             return _off(_off_rows(every))
         raise
@@ -124,12 +142,13 @@ def _off_rows(every):
 
 
 def write_obj(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: dict) -> None:
-    """Write an OBJ file: the group `panels`, and each family of curves as a group of `l` lines."""
+    """Write an OBJ file: groups `panels`, `panels_cut`, and of `l` lines each family of curves."""
     with open(path, "w", encoding="utf-8", newline="\n") as out:
         out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in V.tolist())
-        for name, lists in {"panels": [*Q, *polygons], **curves}.items():
+        faces = {"panels": Q} | ({CUT: polygons} if polygons else {})
+        for name, lists in {**faces, **curves}.items():
             out.write(f"g {name}\n")
-            key = "f" if name == "panels" else "l"
+            key = "f" if name in faces else "l"
             out.writelines(f"{key} {_words(indices + 1)}\n" for indices in lists)
 
 
@@ -137,7 +156,8 @@ def write_off(path: Path, V: np.ndarray, Q: np.ndarray, polygons: list, curves: 
     """Write an OFF file; it has no place for curves."""
     faces = [*Q, *polygons]
     with open(path, "w", encoding="utf-8", newline="\n") as out:
-        out.write(f"OFF\n{len(V)} {len(faces)} 0\n")
+        out.write("OFF\n" + (f"# {CUT} {len(polygons)}\n" if polygons else ""))
+        out.write(f"{len(V)} {len(faces)} 0\n")
         out.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in V.tolist())
         out.writelines(f"{len(face)} {_words(face)}\n" for face in faces)
 
