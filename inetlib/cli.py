@@ -183,8 +183,8 @@ def _measure(given):
 def _cover_options(command):
     from .examples import SURFACES
 
-    text = f"""a disk or a ring: a file .obj, .ply, .off, .stl, .vtp, .glb, .gltf or .3dm, or one
-        of the examples {", ".join(SURFACES)}"""
+    text = f"""a disk, with any number of holes: a file .obj, .ply, .off, .stl, .vtp, .glb, .gltf
+        or .3dm, or one of the examples {", ".join(SURFACES)}"""
     command.add_argument("surface", help=text)
     _angle_options(command, "", required=True)
     size = command.add_mutually_exclusive_group()
@@ -194,6 +194,14 @@ def _cover_options(command):
     size.add_argument("--size", type=_positive, help=text)
     text = "duplicate vertices stay: what was cut open on purpose stays open"
     command.add_argument("--no-merge", action="store_true", help=text)
+    part = command.add_mutually_exclusive_group()
+    text = "of a surface of several pieces the N-th by area (1: the largest)"
+    part.add_argument("--piece", type=_whole, metavar="N", help=text)
+    text = "the largest piece, as --piece 1"
+    part.add_argument("--largest", dest="piece", action="store_const", const=1, help=text)
+    text = """one hole: an opening, which the curves run on across, or a ring's (ring); two
+        holes or more are openings"""
+    command.add_argument("--openings", choices=("fill", "ring"), help=text)
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
@@ -211,8 +219,13 @@ def _cover(given):
     from . import design
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
-    ways = {"tolerance": given.tolerance, "progress": _progress(given)}
+    ways = {"tolerance": given.tolerance, "progress": _progress(given), "openings": given.openings}
     with io.named(given.surface, V, counted=False):
+        if given.piece is not None:
+            from . import repair
+
+            V, F, said = repair.piece(V, F, given.piece)
+            repaired = [*repaired, said] if said else repaired
         found = design.cover(V, F, *asked, **ways)
     about = found.report
     said = [*about.notes, *repaired, *about.repairs]

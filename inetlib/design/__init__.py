@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 from .. import parallelogram, reference, repair, solver
 from ..solver.run import timed
-from . import flatten, overlay
+from . import flatten, opening, overlay
 from .report import Report, area_of, survey
 
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
@@ -53,6 +53,7 @@ def cover(
     direction: float = 0.0,
     *,
     boundary: str = "even",
+    openings: str | None = None,
     optimise: bool = True,
     tolerance: float = 1e-11,
     progress: bool = False,
@@ -65,13 +66,15 @@ def cover(
                    against that around the hole; radians, as theta and theta0
     boundary       "even": sizes as equal as a conformal map allows; "plain": another map of
                    disks; over a ring the u-lines then follow both boundaries (direction=0)
+    openings       "fill": a hole is an opening, the curves run on across it; "ring", and None if
+                   there is one hole: the net closes around it; more holes are openings
     optimise       move the vertices until the angles are exact up to `tolerance` (else: nearly)
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
                    after every one (`solver.run.Step`); it may return False to stop
 
-    The surface is a disk (one boundary loop) or a ring (two), in one piece; the net has whole
-    quads only and leaves less than a quad's width free at the boundary.  Over a ring it closes,
-    with the nearest size and direction for which it can.  ValueError for input that cannot be
+    The surface is a disk with any number of holes, in one piece; the net has whole quads only
+    and leaves less than a quad's width free at the boundary.  Over a ring it closes, with the
+    nearest size and direction for which it can.  ValueError for input that cannot be
     covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
     off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
@@ -86,13 +89,10 @@ def cover(
     stage = partial(_stage, seconds, progress)
     with stage("check"):
         surface = repair.clean(V, F)
+        filled = opening.are_filled(openings, surface.loops)
         goal = reference.mesh(surface.V, surface.F)
     with stage("flatten"):
-        W, T, loops = surface[:3]
-        while len(T) < COARSE:  # the map is linear on each triangle
-            W, T = igl.upsample(W, T)
-            loops = repair.topology(T)
-        flat = flatten.flatten(W, T, loops, boundary)
+        W, flat = _flatten(surface, filled, boundary)
     with stage("grid"):
         domain = overlay.Domain(flat, W)
         layer = overlay.cover(domain, theta, theta0, count, size, direction)
@@ -109,6 +109,19 @@ def cover(
         words += ": its triangles are coarser" if coarse else ": ask for more quads"
     found = found._replace(converged=done, message=words, winding=layer.winding)
     return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
+
+
+def _flatten(surface, filled, boundary):
+    """(vertices, `Flat`) of the surface, divided where it is coarse; filled: without openings."""
+    (W, T, loops), count = surface[:3], len(surface.F)
+    if filled:
+        W, T = opening.filled(W, T, loops)
+        loops = repair.topology(T)
+    while len(T) < COARSE:  # the map is linear on each triangle
+        W, T = igl.upsample(W, T)
+        loops, count = repair.topology(T), 4 * count
+    flat = flatten.flatten(W, T, loops, boundary)
+    return W, opening.opened(flat, W, count) if filled else flat
 
 
 @contextmanager

@@ -4,11 +4,14 @@ from typing import NamedTuple
 
 import igl
 import numpy as np
+import shapely
 
 from .. import mesh, parallelogram, ties
 from ..repair import components
+from . import opening
 
 INSIDE = 1e-7  # of the size of the domain: points this close to it are inside, far above rounding
+TINY = 1e-9  # of a cell: a part this small of it is none
 TRIES = 30  # sizes that are tried for a wanted number of quads
 CLOSE = 0.004  # of the wanted number: close enough
 MOST = 20_000_000  # grid points that are tried
@@ -33,6 +36,8 @@ class Domain:
         a, b, c = flat.z[flat.F].T
         self.area = float(np.sum(np.imag(np.conj(b - a) * (c - a))) / 2)
         self.size = float(np.linalg.norm(np.ptp(self.plane, axis=0)))
+        loops = opening.outlines(flat)[1] if flat.period is None else []
+        self.openings = [shapely.make_valid(shapely.Polygon(self.plane[x, :2])) for x in loops]
 
     def lift(self, z: np.ndarray):
         """(inside (k,) booleans, points (k, 3) on the surface) of points z of the plane."""
@@ -117,10 +122,27 @@ def _layer(domain, u, v, winding):
     centre, period = (i[whole] + 0.5) * u + (j[whole] + 0.5) * v, domain.flat.period or 0
     copies = [domain.lift(centre + copy)[0] for copy in {0, period, -period}]
     whole[whole] = np.any(copies, axis=0)
+    for hole in domain.openings:
+        whole[whole] = ~_meet(cells(i[whole], j[whole], u, v), hole)
     if not whole.any():
         return None
     used, Q = np.unique(_largest_piece(Q[whole]), return_inverse=True)
     return Layer(V[used], Q.reshape(-1, 4), winding) if len(used) else None
+
+
+def cells(i: np.ndarray, j: np.ndarray, u: complex, v: complex) -> np.ndarray:
+    """The cells (k,) of the grid from i u + j v to (i + 1) u + (j + 1) v, as polygons."""
+    corners = np.stack([(i + a) * u + (j + b) * v for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))], 1)
+    return shapely.polygons(np.stack([corners.real, corners.imag], axis=2))
+
+
+def _meet(cells, hole):
+    """Whether each of the cells has a part in common with the hole."""
+    shapely.prepare(hole)
+    found = shapely.intersects(hole, cells)
+    area = shapely.area(shapely.intersection(cells[found], hole))
+    found[found] = area > TINY * shapely.area(cells[found])
+    return found
 
 
 def _points(domain, u, v):
