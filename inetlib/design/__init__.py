@@ -80,8 +80,8 @@ def cover(
     The surface is a disk with any number of holes, in one piece; the net has whole quads only
     and leaves less than a quad's width free at the boundary, or cut panels there.  Over a ring it
     closes, with the nearest size and direction for which it can.  ValueError for input that
-    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
-    off is returned, not raised."""
+    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net
+    that is off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
     if size is None:
