@@ -8,12 +8,12 @@ import numpy as np
 import shapely
 
 from .. import mesh, ties
+from ..reference import CORNER
 from . import overlay
 from .regions import NONE, Regions, sides
 
 SLIVER = 0.1  # of a quad: smaller faces become parts of their neighbours
 MOST = 6  # corners
-CORNER = np.radians(30)  # a boundary that turns by more has a corner there
 BULGE = 0.1  # of an edge: a boundary farther from a side gets a corner; one too many, at 2 BULGE
 
 
