@@ -135,6 +135,17 @@ _angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180
 _turn = _number("a finite number", lambda x: True, math.radians)
 _tolerance = _number("a positive number", lambda x: x > 0, math.radians)
 _positive = _number("a positive number", lambda x: x > 0)
+
+
+def _point(text):
+    """An argparse type: x,y,z."""
+    with contextlib.suppress(ValueError):
+        point = tuple(map(float, text.split(",")))
+        if len(point) == 3 and all(map(math.isfinite, point)):
+            return point
+    raise argparse.ArgumentTypeError(f"{text} is given, three finite numbers x,y,z are wanted")
+
+
 _whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
 _port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
 
@@ -195,8 +206,8 @@ def _measure(given):
 def _cover_options(command):
     from .examples import SURFACES
 
-    text = f"""a disk or a ring: a file .obj, .ply, .off, .stl, .vtp, .glb, .gltf or .3dm, or one
-        of the examples {", ".join(SURFACES)}"""
+    text = f"""a disk, with any number of holes: a file .obj, .ply, .off, .stl, .vtp, .glb, .gltf
+        or .3dm, or one of the examples {", ".join(SURFACES)}"""
     command.add_argument("surface", help=text)
     _angle_options(command, "", required=True)
     size = command.add_mutually_exclusive_group()
@@ -206,9 +217,26 @@ def _cover_options(command):
     size.add_argument("--size", type=_positive, help=text)
     text = "duplicate vertices stay: what was cut open on purpose stays open"
     command.add_argument("--no-merge", action="store_true", help=text)
+    part = command.add_mutually_exclusive_group()
+    text = "of a surface of several pieces the N-th by area (1: the largest)"
+    part.add_argument("--piece", type=_whole, metavar="N", help=text)
+    text = "the largest piece, as --piece 1"
+    part.add_argument("--largest", dest="piece", action="store_const", const=1, help=text)
+    text = """one hole: an opening, which the curves run on across, or a ring's (ring); two
+        holes or more are openings"""
+    command.add_argument("--openings", choices=("fill", "ring"), help=text)
+    text = "fill the strip at the boundary with cut panels, 3 to 6 corners each"
+    command.add_argument("--trim", action="store_true", help=text)
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
+    way = command.add_mutually_exclusive_group()
+    text = "u-lines follow its longest stretch without corners; --direction adds to this"
+    way.add_argument("--along", choices=("boundary",), help=text)
+    text = "u-lines go that way in space, --through a point or in the middle (--align=-1,0,0)"
+    way.add_argument("--align", type=_point, metavar="X,Y,Z", help=text)
+    text = "the point of the surface nearest to this one is a vertex of the net"
+    command.add_argument("--through", type=_point, metavar="X,Y,Z", help=text)
     _write_options(command, keep=True)
 
 
@@ -223,14 +251,21 @@ def _cover(given):
     from . import design
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
-    ways = {"tolerance": given.tolerance, "progress": _progress(given)}
+    ways = {"tolerance": given.tolerance, "progress": _progress(given), "openings": given.openings}
+    ways |= {name: getattr(given, name) for name in ("trim", "along", "align", "through")}
     with io.named(given.surface, V, counted=False):
+        if given.piece is not None:
+            from . import repair
+
+            V, F, said = repair.piece(V, F, given.piece)
+            repaired = [*repaired, said] if said else repaired
         found = design.cover(V, F, *asked, **ways)
     about = found.report
     said = [*about.notes, *repaired, *about.repairs]
     notes = [f"{given.surface}: {x}" for x in dict.fromkeys(said)]
     more = {"converged": about.converged, "message": about.message}
-    return _finish(given, found.V, found.Q, (), about, notes, more)
+    net = found.V, found.Q, found.polygons
+    return _finish(given, *net, about, notes, more, found.edges)
 
 
 def _web_options(command):
@@ -507,15 +542,16 @@ def _style(given):
     return given.unit, given.dxf == "3dface", given.up
 
 
-def _finish(given, V, Q, polygons, about, notes, more):
+def _finish(given, V, Q, polygons, about, notes, more, edges=None):
     """Write the net if it is good or to be kept, and say what there is to say: exit code."""
-    from . import io
+    from . import io, mesh
 
     good = more.get("converged", True)
     written = good or given.keep
     if written:
         suffix = Path(given.output).suffix.lower()
-        curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
+        wanted = given.curves or (suffix in io.WITH_CURVES and suffix != ".obj")
+        curves = mesh.polylines(Q, edges) if wanted else None
         io.write(given.output, V, Q, curves, polygons, given.force, *_style(given))
     more |= _out_of_plane(given, V, Q, polygons)
     _say(given, about, given.output if written else None, notes, **more)

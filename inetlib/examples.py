@@ -1,7 +1,9 @@
 """Triangle meshes V (n, 3), F (f, 3) to cover, and small quad meshes that are hard to label."""
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array, diags_array
+from scipy.spatial import Delaunay
 
 from . import mesh
 from .parallelogram import check_whole
@@ -12,8 +14,9 @@ def wavy_roof(n: int = 40) -> tuple[np.ndarray, np.ndarray]:
     n = check_whole("n", n, 2)
     m = max(2, round(2 * n / 3))
     x, y = np.meshgrid(np.linspace(0, 3, n + 1), np.linspace(0, 2, m + 1), indexing="ij")
-    z = 0.25 * np.sin(2.2 * x + 0.4) * np.cos(1.7 * y) + 0.08 * x * y
-    return mesh.triangles(np.stack([x, y, z], axis=-1).reshape(-1, 3), mesh.grid_quads(n, m))
+    return mesh.triangles(
+        np.stack([x, y, _waves(x, y)], axis=-1).reshape(-1, 3), mesh.grid_quads(n, m)
+    )
 
 
 def saddle_with_hole(n: int = 20) -> tuple[np.ndarray, np.ndarray]:
@@ -46,7 +49,86 @@ def hanging_shell(n: int = 30) -> tuple[np.ndarray, np.ndarray]:
     return mesh.triangles(V, Q)
 
 
-SURFACES = {"roof": wavy_roof, "saddle": saddle_with_hole, "shell": hanging_shell}
+def skylight(n: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """The wavy roof of 3 by 2 with a round opening, in triangles of sides of about 3 / n."""
+    return _pierced(n, [_oval(n, 1.7, 1.1, 0.4, 0.4)], _waves)
+
+
+def two_skylights(n: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """A barrel vault of 3 by 2 with a square opening and an oval one close to its edge."""
+
+    def vault(x, y):
+        return 0.5 * np.cos(1.1 * (y - 1)) + 0.03 * (x - 1.5) ** 2
+
+    square = np.array([0.7 + 0.6j, 1.3 + 0.6j, 1.3 + 1.2j, 0.7 + 1.2j])
+    return _pierced(n, [square, _oval(n, 2.2, 0.33, 0.35, 0.25)], vault)
+
+
+def five_skylights(n: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """A dome over 3 by 2 with five openings: round, oval, and an L of six corners."""
+    corner = np.array([0.4 + 0.4j, 1.1 + 0.4j, 1.1 + 0.7j, 0.7 + 0.7j, 0.7 + 1j, 0.4 + 1j])
+    ovals = (
+        (1.5, 1.35, 0.25, 0.25),
+        (2.4, 0.5, 0.2, 0.3),
+        (2.4, 1.4, 0.3, 0.2),
+        (0.6, 1.6, 0.1, 0.1),
+    )
+    holes = [corner, *(_oval(n, *oval) for oval in ovals)]
+    return _pierced(n, holes, lambda x, y: 0.2 * x * (3 - x) + 0.3 * y * (2 - y))
+
+
+SURFACES = {
+    "roof": wavy_roof,
+    "saddle": saddle_with_hole,
+    "shell": hanging_shell,
+    "skylight": skylight,
+    "two_skylights": two_skylights,
+    "five_skylights": five_skylights,
+}
+
+
+def _waves(x, y):
+    return 0.25 * np.sin(2.2 * x + 0.4) * np.cos(1.7 * y) + 0.08 * x * y
+
+
+def _oval(n, x, y, a, b):
+    """Corners of an ellipse in the plane, complex, n of them but at least eight."""
+    n = check_whole("n", n, 2)
+    around = 2 * np.pi * np.arange(max(n, 8)) / max(n, 8)
+    return x + 1j * y + a * np.cos(around) + 1j * b * np.sin(around)
+
+
+def _pierced(n, holes, height):
+    """Triangles of the rectangle of 3 by 2 without holes (complex corners), lifted to a height."""
+    step = 3 / check_whole("n", n, 2)
+    outline = np.array([0, 3, 3 + 2j, 2j])
+    rims = [_divided(rim, step) for rim in (outline, *holes)]
+    inside = shapely.Polygon(_points(outline), [_points(hole) for hole in holes])
+    x, y = np.mgrid[step : 3 : 0.87 * step, step:2:step]
+    y[1::2] += step / 2
+    inner = np.stack([x.ravel(), y.ravel()], axis=1)
+    free = shapely.distance(inside.boundary, shapely.points(inner)) > 0.6 * step
+    points = np.concatenate([_points(np.concatenate(rims)), inner[free]])
+    F = Delaunay(points).simplices.astype(np.int64)
+    a, b, c = (points[F] @ [1, 1j]).T
+    area = np.imag(np.conj(b - a) * (c - a))
+    F[area < 0] = F[area < 0, ::-1]
+    F = F[shapely.contains_xy(inside, *points[F].mean(axis=1).T) & (np.abs(area) > 1e-3 * step**2)]
+    used, F = np.unique(F, return_inverse=True)
+    x, y = points[used].T
+    return np.stack([x, y, height(x, y)], axis=1), F.reshape(-1, 3)
+
+
+def _divided(rim, step):
+    """The corners of a closed polygon, and points between them about a step apart."""
+    sides = zip(rim, np.roll(rim, -1) - rim, strict=True)
+    return np.concatenate(
+        [a + way * np.linspace(0, 1, max(1, round(abs(way) / step)) + 1)[:-1] for a, way in sides]
+    )
+
+
+def _points(z):
+    return np.stack([z.real, z.imag], axis=1)
 
 
 def vertex(valence: int, rings: int) -> tuple[np.ndarray, np.ndarray]:

@@ -20,16 +20,16 @@ class Clean(NamedTuple):
 
     V: np.ndarray  # (n, 3)
     F: np.ndarray  # (f, 3)
-    loops: list  # the boundary loops, one for a disk, two for a ring
+    loops: list  # the boundary loops, one for a disk, two for a ring, more with more openings
     repairs: list  # what was done, sentences
 
 
 def clean(V: np.ndarray, F: np.ndarray) -> Clean:
     """The triangles (f, 3) or quads (f, 4) F with vertices V (n, 3) as a `Clean` surface.
 
-    Vertices at one place become one only where nothing else helps.  Triangles of a ring are
-    halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
-    for what no step can repair, and for all but disks and rings."""
+    Vertices at one place become one only where nothing else helps.  With openings, triangles
+    are halved where an edge joins two vertices of one boundary loop.  ValueError, one sentence,
+    for what no step can repair, and for all but disks with any number of openings."""
     given = mesh.triangles(V, F)
     try:
         V, F, said = _oriented(*given)
@@ -204,9 +204,8 @@ def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:
 
 
 def topology(T: np.ndarray) -> list:
-    """The boundary loops of oriented triangles, longest first; ValueError if no disk or ring."""
-    one, two = mesh.pairs(T).T // 3
-    sizes = np.sort(np.bincount(components(len(T), one, two)))[::-1]
+    """The boundary loops of oriented triangles, longest first; ValueError if no open disk."""
+    sizes = np.sort(np.bincount(_pieces(T)))[::-1]
     if len(sizes) > 1:
         some = ", ".join(map(str, sizes[:4])) + " ..." * (len(sizes) > 4)
         pieces = f"{len(sizes)} separate pieces (of {some} faces)"
@@ -214,11 +213,35 @@ def topology(T: np.ndarray) -> list:
     loops = mesh.boundary_loops(T)
     euler = len(np.unique(T)) - (T.size + sum(map(len, loops))) // 2 + len(T)
     handles = (2 - len(loops) - euler) // 2
-    if handles or len(loops) not in (1, 2):
+    if handles or not loops:
         found = f"{'has' if loops else 'is closed: it has'} {len(loops)} boundary loops and"
-        wanted = "cut it into disks (1 loop, no handle) or rings (2 loops, no handle)"
+        wanted = "cut it into pieces with a boundary and without handles"
         raise ValueError(f"the surface {found} {handles} handles: {wanted}")
     return sorted(loops, key=len, reverse=True)
+
+
+def piece(V: np.ndarray, F: np.ndarray, number: int = 1) -> tuple[np.ndarray, np.ndarray, str]:
+    """(V, triangles, a sentence) of one piece of a surface; number 1 is the largest by area.
+
+    F: triangles (f, 3) or quads (f, 4).  ValueError for a number beyond that of the pieces."""
+    V, T = mesh.triangles(V, F)
+    label = _pieces(T)
+    sides = V[np.roll(T, -1, axis=1)] - V[T]
+    area = np.bincount(label, np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2)
+    if not 1 <= number <= len(area):
+        words = f"the surface has {len(area)} separate pieces: a number from 1 to {len(area)}"
+        raise ValueError(f"piece {number}: {words} is wanted")
+    order = np.argsort(ties.ranks(-area, ties.TIE * area.max()), kind="stable")
+    chosen = order[number - 1]
+    used, corner = np.unique(T[label == chosen], return_inverse=True)
+    part = f"{100 * area[chosen] / area.sum():.2g} % of the area"
+    said = f"piece {number} of {len(area)} is covered, {part}" if len(area) > 1 else ""
+    return V[used], corner.reshape(-1, 3), said
+
+
+def _pieces(T):
+    """The number of each triangle's piece, connected by edges."""
+    return components(len(T), *mesh.pairs(T).T // 3)
 
 
 def _without_chords(V, T, loops):

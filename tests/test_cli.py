@@ -329,9 +329,15 @@ def test_figures_needs_a_clone_and_names_that_are_there(inet, monkeypatch, tmp_p
 def test_surfaces_are_repaired_and_it_is_said_or_refused(inet):
     V, F = examples.wavy_roof(15)
     words = *ANGLES, "--quads", 80, "-o", "a.obj"
-    io.write("my holes.ply", V, np.delete(F, [68, 148, 228], axis=0))
-    assert refused(inet("cover", "my holes.ply", *words), "4 boundary loops")
+    io.write("two roofs.ply", np.concatenate([V, V + 9]), np.concatenate([F, F[9:] + len(V)]))
+    assert refused(inet("cover", "two roofs.ply", *words), "2 separate pieces")
+    assert refused(
+        inet("cover", "two roofs.ply", *words, "--piece", 7), "piece 7: the surface has 2"
+    )
     assert not Path("a.obj").exists()
+    for choice in (["--largest"], ["--piece", 2]):
+        code, out, _ = inet("cover", "two roofs.ply", *words, *choice, "--force")
+        assert code == 0 and f"piece {[1, *choice[1:]][-1]} of 2" in out
     F[::3] = F[::3, ::-1]
     io.write("flipped.ply", V, F)
     io.write("soup.ply", V[F].reshape(-1, 3), np.arange(F.size).reshape(-1, 3))
@@ -392,8 +398,8 @@ def test_explore_serves_a_sound_surface_and_tells_the_address(inet, monkeypatch)
     (surface, *more) = served.pop()
     assert np.array_equal(surface.V, V) and more == ["roof.obj", 8123]
     assert shown == ["http://127.0.0.1:8123/"]
-    io.write("holes.obj", V, np.delete(F, [68, 148, 228], axis=0))
-    assert refused(inet("explore", "holes.obj"), "boundary loops") and not served
+    io.write("two.obj", np.concatenate([V, V + 9]), np.concatenate([F, F + len(V)]))
+    assert refused(inet("explore", "two.obj"), "separate pieces") and not served
 
 
 FAKE = """

@@ -108,6 +108,22 @@ def holes(*places):
     return V, np.delete(F, [np.argmin(np.linalg.norm(middle - p, axis=1)) for p in places], axis=0)
 
 
+def test_openings_are_no_fault_and_the_largest_piece_is_the_first():
+    assert [len(loop) for loop in repair.clean(*holes([0.5, 0.3], [1.4, 0.7])).loops[1:]] == [3, 3]
+    V, F, said = repair.piece(*[np.concatenate([*X]) for X in two_plates()], 1)
+    assert V[:, 0].max() == 4 and "piece 1 of 2 is covered, 80 % of the area" in said
+    V, F, said = repair.piece(V, F, 1)
+    assert not said and len(F) == 72
+    with pytest.raises(ValueError, match="piece 2: the surface has 1 separate pieces"):
+        repair.piece(V, F, 2)
+
+
+def two_plates():
+    """A plate of 2 by 1, and another one twice as large beside it."""
+    V, F = plate()
+    return (V - 5, 2 * V), (F, F + len(V))
+
+
 def pinched():
     """A bent strip of triangles with its last vertex on its first one."""
     V, Q = sheet(8, 1, lambda u, v: polar(1 + v, 5 * u))
@@ -134,10 +150,9 @@ NEVER = {  # no manifold
     r"triangle 1-7-8 near \(0, 0\.166667, 0\) has no area": lambda: FLAT,
 }
 TWO = [np.concatenate([X, X + shift]) for X, shift in zip(plate(), (5, 49), strict=True)]
-ELSE = {  # no disk and no ring
+ELSE = {  # no disk with any number of holes
     "has 0 boundary loops and 1 handles": torus,
     "has 1 boundary loops and 1 handles": lambda: (torus()[0], torus()[1][1:]),
-    "has 3 boundary loops and 0 handles": lambda: holes([0.5, 0.3], [1.4, 0.7]),
     r"has 2 separate pieces \(of 72, 72 faces\)": lambda: TWO,
 }
 BROKEN = {
