@@ -51,8 +51,12 @@ def surface(ax, view, V, Q, colours=EXACT, lines=(), polygons=()):
 
 def outline(V, quads, colour=plot.INK, width=1.3):
     """The boundary of some faces as a line for `plot.scene`."""
-    rim = V[mesh.boundary_loops(quads)[0]]
-    return np.concatenate([rim, rim[:1]]), colour, width
+    return closed(V[mesh.boundary_loops(quads)[0]]), colour, width
+
+
+def closed(points):
+    """The line through points (k, 3), back to the first one."""
+    return np.concatenate([points, points[:1]])
 
 
 def bar(ax, scale, box):
