@@ -124,6 +124,32 @@ def test_every_kind_of_net_can_be_chosen(tab):
     judge(reader)
 
 
+def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
+    reader = tab("kind=cover&source=skylight&quads=200")
+    switch, cut = (reader.page.locator(name) for name in (".in-trim", ".out-cut"))
+    assert switch.is_visible() and not cut.is_visible()
+    judge(reader)
+    reader.choose("openings", choices.OPTIONS["openings"]["fill"])
+    seen = [reader.picture()]
+    switch.locator("input").check()
+    reader.settled()
+    judge(reader)
+    whole, cut_ones = (len(reader.made[name]) for name in ("Q", "polygons"))
+    assert cut.inner_text() == f"{whole} whole, {cut_ones} cut"
+    assert reader.page.locator("h2", has_text=f"Over all {whole} faces").is_visible()
+    seen.append(reader.picture())
+    before, after = ((np.abs(x - x[-5, 5]).sum(axis=-1) > 30).sum() for x in seen)
+    assert after > 1.1 * before  # more is covered
+    choice = reader.choice()
+    assert choice.trim and choice.openings == "fill"
+    reader.choose("source", choices.OPTIONS["source"]["two_skylights"])
+    assert not reader.page.locator(".in-openings").is_visible()
+    assert re.fullmatch(r"\d+ whole, \d+ cut", cut.inner_text())
+    reader.choose("kind", choices.OPTIONS["kind"]["plane"])
+    assert not switch.is_visible() and not cut.is_visible()
+    judge(reader)
+
+
 def test_the_profile_can_be_edited(tab):
     reader = tab("kind=revolution&m=8&n=6")
     reader.page.get_by_role("button", name="barrel").click()
@@ -281,6 +307,7 @@ STATES = [
     "kind=revolution&families=u,v,d1,d2&parallelograms=1",
     "kind=freeform&theta0=45",
     "kind=cover&quads=100&shade=1",
+    "kind=cover&source=skylight&quads=200&trim=1",
     "theta=1&theta0=179",
 ]
 CROWDED = """() => {
