@@ -202,6 +202,8 @@ def _cover_options(command):
     text = """one hole: an opening, which the curves run on across, or a ring's (ring); two
         holes or more are openings"""
     command.add_argument("--openings", choices=("fill", "ring"), help=text)
+    text = "fill the strip at the boundary with cut panels, 3 to 6 corners each"
+    command.add_argument("--trim", action="store_true", help=text)
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
@@ -220,6 +222,7 @@ def _cover(given):
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
     ways = {"tolerance": given.tolerance, "progress": _progress(given), "openings": given.openings}
+    ways["trim"] = given.trim
     with io.named(given.surface, V, counted=False):
         if given.piece is not None:
             from . import repair
@@ -231,7 +234,8 @@ def _cover(given):
     said = [*about.notes, *repaired, *about.repairs]
     notes = [f"{given.surface}: {x}" for x in dict.fromkeys(said)]
     more = {"converged": about.converged, "message": about.message}
-    return _finish(given, found.V, found.Q, (), about, notes, more)
+    net = found.V, found.Q, found.polygons
+    return _finish(given, *net, about, notes, more, found.edges)
 
 
 def _web_options(command):
@@ -467,15 +471,16 @@ def _style(given):
     return given.unit, given.dxf == "3dface", given.up
 
 
-def _finish(given, V, Q, polygons, about, notes, more):
+def _finish(given, V, Q, polygons, about, notes, more, edges=None):
     """Write the net if it is good or to be kept, and say what there is to say: exit code."""
-    from . import io
+    from . import io, mesh
 
     good = more.get("converged", True)
     written = good or given.keep
     if written:
         suffix = Path(given.output).suffix.lower()
-        curves = "all" if given.curves or (suffix in io.WITH_CURVES and suffix != ".obj") else None
+        wanted = given.curves or (suffix in io.WITH_CURVES and suffix != ".obj")
+        curves = mesh.polylines(Q, edges) if wanted else None
         io.write(given.output, V, Q, curves, polygons, given.force, *_style(given))
     _say(given, about, given.output if written else None, notes, **more)
     if good:

@@ -304,13 +304,16 @@ class Families(NamedTuple):
     d2: list
 
 
-def polylines(Q: ArrayLike) -> Families:
+def polylines(Q: ArrayLike, further: dict | None = None) -> Families:
     """The mesh curves along u-edges, v-edges, diagonals v1 v3 (Y_u) and diagonals v2 v4 (Y_v).
 
+    further: more edges {"u": (k, 2), "v": (k, 2)}, of `design.Cover.edges`.
     Q labelled, else ValueError.  They end at boundary and singular vertices."""
     require_labels(Q)
-    Q = check_quads(Q)
-    return Families(*(chains(edges) for edges in (*_edges(Q), Q[:, ::2], Q[:, 1::2])))
+    Q, further = check_quads(Q), further or {}
+    none = np.empty((0, 2), dtype=np.int64)
+    grid = [np.concatenate([e, further.get(k, none)]) for e, k in zip(_edges(Q), "uv", strict=True)]
+    return Families(*(chains(edges) for edges in (*grid, Q[:, ::2], Q[:, 1::2])))
 
 
 def _edges(Q):

@@ -16,6 +16,7 @@ from .. import parallelogram, reference, repair, solver
 from ..solver.run import timed
 from . import flatten, opening, overlay
 from .report import Report, area_of, survey
+from .trim import trim as cut
 
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
 ON = POLISH | {"on_surface": True}
@@ -31,7 +32,7 @@ AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcom
 
 
 class Cover(NamedTuple):
-    """The net V (n, 3), Q (f, 4), labelled, and its `Report`.
+    """The net V (n, 3), Q (f, 4), labelled, its `Report`, and what `cover(..., trim=True)` adds.
 
     >>> from inetlib import examples
     >>> net = cover(*examples.wavy_roof(10), np.radians(70), np.radians(50), count=50)
@@ -41,6 +42,8 @@ class Cover(NamedTuple):
     V: np.ndarray
     Q: np.ndarray
     report: Report
+    polygons: list = ()  # index arrays: panels that are cut at the boundary, turning like the quads
+    edges: dict = None  # {"u": (k, 2), "v": (k, 2)}: where the curves of the net run on, to there
 
 
 def cover(
@@ -54,6 +57,7 @@ def cover(
     *,
     boundary: str = "even",
     openings: str | None = None,
+    trim: bool = False,
     optimise: bool = True,
     tolerance: float = 1e-11,
     progress: bool = False,
@@ -68,14 +72,15 @@ def cover(
                    disks; over a ring the u-lines then follow both boundaries (direction=0)
     openings       "fill": a hole is an opening, the curves run on across it; "ring", and None if
                    there is one hole: the net closes around it; more holes are openings
+    trim           fill the strip between the whole quads and the boundary, by cut panels
     optimise       move the vertices until the angles are exact up to `tolerance` (else: nearly)
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
                    after every one (`solver.run.Step`); it may return False to stop
 
     The surface is a disk with any number of holes, in one piece; the net has whole quads only
-    and leaves less than a quad's width free at the boundary.  Over a ring it closes, with the
-    nearest size and direction for which it can.  ValueError for input that cannot be
-    covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
+    and leaves less than a quad's width free at the boundary, or cut panels there.  Over a ring it
+    closes, with the nearest size and direction for which it can.  ValueError for input that
+    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
     off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
@@ -96,19 +101,26 @@ def cover(
     with stage("grid"):
         domain = overlay.Domain(flat, W)
         layer = overlay.cover(domain, theta, theta0, count, size, direction)
+        edge = cut(domain, layer) if trim else None
+        layer = edge.layer if trim else layer
     net, done, words = layer.V, False, "not optimised"
     if optimise:
         with timed(seconds, "optimise"):
             net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress, callback)
     with stage("report"):
-        found = survey(net, layer.Q, theta, theta0, goal, flat)
+        polygons = edge.polygons if trim else []
+        net = np.concatenate([net, edge.extra]) if trim else net
+        found = survey(net, layer.Q, theta, theta0, goal, flat, polygons)
     if done and found.distance_max > AWAY:
         words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
         triangles = np.linalg.norm(surface.V[surface.F[:, 1]] - surface.V[surface.F[:, 0]], axis=1)
         coarse = triangles.mean() > found.edge_mean
         words += ": its triangles are coarser" if coarse else ": ask for more quads"
     found = found._replace(converged=done, message=words, winding=layer.winding)
-    return Cover(net, layer.Q, found._replace(repairs=tuple(surface.repairs), seconds=seconds))
+    found = found._replace(repairs=tuple(surface.repairs), seconds=seconds)
+    if not trim:
+        return Cover(net, layer.Q, found, [])
+    return Cover(net, layer.Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
 
 
 def _flatten(surface, filled, boundary):

@@ -23,6 +23,14 @@ class Layer(NamedTuple):
     V: np.ndarray
     Q: np.ndarray
     winding: tuple
+    u: complex
+    v: complex
+    ij: np.ndarray  # (n, 2) integers: in the plane, vertices lie at i u + j v
+
+    def kept(self, Q: np.ndarray) -> "Layer":
+        """The layer with the quads Q (f, 4) only, and their vertices."""
+        used, Q = np.unique(Q, return_inverse=True)
+        return self._replace(V=self.V[used], Q=Q.reshape(-1, 4), ij=self.ij[used])
 
 
 class Domain:
@@ -50,6 +58,14 @@ class Domain:
         weights = np.stack([1 - second - third, second, third], axis=1)
         inside = squares <= (INSIDE * self.size) ** 2
         return inside, np.einsum("kc,kcx->kx", weights, self.space[self.flat.F[face]])
+
+    def raised(self, z: np.ndarray) -> np.ndarray:
+        """The points (k, 3) of the surface at z, which may be some periods off around a ring."""
+        inside, points = self.lift(z)
+        for turn in (1, -1, 2, -2, 3, -3) if self.flat.period else ():
+            there, others = self.lift(z + turn * self.flat.period)
+            points[there & ~inside], inside = others[there & ~inside], inside | there
+        return points
 
 
 def cover(
@@ -110,13 +126,14 @@ def _layer(domain, u, v, winding):
     """The `Layer` of the grid u, v, or None if no whole quad is inside."""
     if 0 < sum(map(abs, winding)) < 3:
         return None  # too few quads around
-    i, j = _points(domain, u, v)
+    i, j = points(domain, u, v)
     inside, V = domain.lift(i * u + j * v)
     i, j, V = i[inside], j[inside], V[inside]
-    key, first = np.unique(_key(domain, u, v, winding, i, j), return_index=True)
+    key, first = np.unique(keys(*turned(domain, u, v, winding, i, j)), return_index=True)
     i, j, V = i[first], j[first], V[first]
     corners = [(i, j + 1), (i, j), (i + 1, j), (i + 1, j + 1)]
-    corners = np.stack([_key(domain, u, v, winding, *corner) for corner in corners], axis=1)
+    corners = [keys(*turned(domain, u, v, winding, *corner)) for corner in corners]
+    corners = np.stack(corners, axis=1)
     Q = np.searchsorted(key, corners)
     whole = (np.append(key, np.iinfo(np.int64).min)[Q] == corners).all(axis=1)
     centre, period = (i[whole] + 0.5) * u + (j[whole] + 0.5) * v, domain.flat.period or 0
@@ -126,8 +143,10 @@ def _layer(domain, u, v, winding):
         whole[whole] = ~_meet(cells(i[whole], j[whole], u, v), hole)
     if not whole.any():
         return None
-    used, Q = np.unique(_largest_piece(Q[whole]), return_inverse=True)
-    return Layer(V[used], Q.reshape(-1, 4), winding) if len(used) else None
+    ij = np.stack(turned(domain, u, v, winding, i, j), axis=1)
+    Q = Q[whole]
+    layer = Layer(V, Q[largest_piece(Q)], winding, u, v, ij)
+    return layer.kept(layer.Q) if len(layer.Q) else None
 
 
 def cells(i: np.ndarray, j: np.ndarray, u: complex, v: complex) -> np.ndarray:
@@ -145,7 +164,7 @@ def _meet(cells, hole):
     return found
 
 
-def _points(domain, u, v):
+def points(domain: Domain, u: complex, v: complex) -> tuple[np.ndarray, np.ndarray]:
     """Integers i, j of all grid points in a box around the domain, each (k,)."""
     z, area = domain.flat.z, np.imag(np.conj(u) * v)
     ij = np.stack([np.imag(z * np.conj(v)) / -area, np.imag(np.conj(u) * z) / area])
@@ -157,16 +176,23 @@ def _points(domain, u, v):
     return np.repeat(i, len(j)), np.tile(j, len(i))
 
 
-def _key(domain, u, v, winding, i, j):
-    """One number (k,) for all grid points that are the same, in the order of i, then of j."""
+def turned(
+    domain: Domain, u: complex, v: complex, winding: tuple, i: np.ndarray, j: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Integers i, j of the same grid points, each (k,), within the first period of a ring."""
     if winding != (0, 0):
         turns = np.floor(np.real((i * u + j * v) / domain.flat.period) + 1e-9).astype(np.int64)
         i, j = i - turns * winding[0], j - turns * winding[1]
+    return i, j
+
+
+def keys(i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """One number (k,) for each of the grid points, in the order of i, then of j."""
     return (i << 32) + j
 
 
-def _largest_piece(Q):
-    """The quads connected by edges to the most others, no two of them touching at a vertex only."""
+def largest_piece(Q: np.ndarray) -> np.ndarray:
+    """Which quads (f,) are connected by edges to the most others; no two touch at a vertex only."""
     pairs, kept = mesh.pairs(Q), np.ones(len(Q), dtype=bool)
     while kept.any():
         inner = pairs[kept[pairs // 4].all(axis=1)]
@@ -179,4 +205,4 @@ def _largest_piece(Q):
         if not pinched.any():
             break
         kept &= ~pinched
-    return Q[kept]
+    return kept

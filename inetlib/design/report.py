@@ -48,6 +48,7 @@ class Report(NamedTuple):
     back_mean: float = None  # from the surface's vertices above the net to the net, in diagonals
     back_max: float = None
     covered: float = None  # area of the net / area of the surface
+    cut_smallest: float = None  # area of the smallest cut panel / that of a quad, in the plane
     scale_ratio: float = None  # largest / smallest scale of the conformal map
     distortion_mean: float = None  # axes of the ellipse that a circle becomes (1 is conformal)
     distortion_max: float = None
@@ -83,22 +84,32 @@ def report(
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     d1 = np.linalg.norm(measure.vectors(V, Q)[0], axis=1)
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
-    counts = len(np.unique(Q)), len(Q), tuple(sorted(map(len, polygons)))
+    vertices = len(np.unique(np.concatenate([Q.ravel(), *polygons])))
+    counts = vertices, len(Q), tuple(sorted(map(len, polygons)))
     known = (*counts, wanted, *spreads, *shape, *sizes)
     return Report(*known)
 
 
 def survey(
-    V: np.ndarray, Q: np.ndarray, theta: float, theta0: float, goal: Reference, flat: Flat
+    V: np.ndarray,
+    Q: np.ndarray,
+    theta: float,
+    theta0: float,
+    goal: Reference,
+    flat: Flat,
+    polygons: Sequence = (),
 ) -> Report:
-    """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
+    """The `Report` of the net V, Q and its cut panels over the `Reference` goal, flattened to
+    the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
-    net, over = report(V, Q, theta=theta, theta0=theta0), reference.mesh(V, Q)
+    net, over = report(V, Q, polygons, theta=theta, theta0=theta0), reference.mesh(V, Q)
     back = np.linalg.norm(over.closest(goal.V)[0] - goal.V, axis=1)
     rim = np.linalg.norm(over.boundary(goal.V)[0] - goal.V, axis=1)
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
-    covered = area_of(V, Q) / area_of(goal.V, goal.F)
+    cut = sum(float(np.linalg.norm(_area_vector(V[polygon]))) for polygon in polygons)
+    covered = (area_of(V, Q) + cut) / area_of(goal.V, goal.F)
     notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))
+    holes = 0 if polygons else holes
     scale_ratio = float(flat.scale.max() / flat.scale.min())
     if covered < COVERED or holes > 0 or back.max() > FAR * net.edge_high:
         why = "the quads are large for its width, ask for more"
@@ -129,6 +140,11 @@ def area_of(V: np.ndarray, F: np.ndarray) -> float:
     return float(igl.doublearea(*mesh.triangles(V, F)).sum() / 2)
 
 
+def _area_vector(corners):
+    P = corners - corners[0]
+    return np.cross(P, np.roll(P, -1, axis=0)).sum(axis=0) / 2
+
+
 def numbers(report: Report) -> dict:
     """The `Report` as a dict for JSON, angles in degrees; what does not apply is left out."""
     r, out = report, (*NAMES, "notes", "repairs")
@@ -149,7 +165,11 @@ def _shown(name, x):
 def text(report: Report) -> str:
     """The `Report` as lines of text, angles in degrees."""
     r, lines = report, [f"{report.vertices} vertices, {report.quads} quads"]
-    if r.polygons:
+    if r.cut_smallest is not None:
+        share = f"the smallest {r.cut_smallest:.2f} of a quad"
+        lines[0] = f"{r.vertices} vertices, {r.quads} whole quads, {len(r.polygons)} cut panels, "
+        lines[0] += share if r.polygons else "there is no need for them"
+    elif r.polygons:
         corners = ", ".join(map(str, r.polygons[:8])) + ", ..." * (len(r.polygons) > 8)
         lines[0] += f"; {len(r.polygons)} other faces, with {corners} corners"
     lines += [f"{'':12}{'mean':>15}{'lowest':>15}{'highest':>15}   largest deviation"]

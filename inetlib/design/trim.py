@@ -1,0 +1,95 @@
+"""Panels between the whole quads of a net and the boundary of its surface, 3 to 6 corners each.
+
+The curves of the grid are cut at the boundary of the flattened surface; there the corners of
+the panels lie on the surface's own boundary edges, elsewhere on the surface."""
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+
+from .. import mesh
+from . import overlay, panels
+from .regions import NEAR, coordinates, regions
+
+ON = 1e-6  # of a cell: points this close to a line of the grid are on it
+
+
+class Trimmed(NamedTuple):
+    """A `Layer` and the cut panels around it."""
+
+    layer: overlay.Layer  # without quads that are whole no longer
+    extra: np.ndarray  # (m, 3) further vertices on the surface, numbered after the layer's
+    polygons: list  # index arrays of the panels, counter-clockwise like the quads
+    areas: np.ndarray  # of the panels in the plane, up to the boundary itself
+    edges: dict  # {"u": (k, 2), "v": (k, 2)} sides of panels on lines of the grid
+
+    @property
+    def smallest(self) -> float:
+        """The area of the smallest panel / that of a quad, in the plane; 1 without panels."""
+        cell = abs(np.imag(np.conj(self.layer.u) * self.layer.v))
+        return float(self.areas.min(initial=cell) / cell)
+
+
+def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
+    """The `Trimmed` layer: whole quads and panels leave no gap, and overlap nowhere.
+
+    ValueError where the boundary of the flattened surface crosses itself."""
+    found = regions(domain, layer)
+    layer, faces = panels.merged(found)
+    count = 1 + max(int(layer.Q.max()), *(int(face.ring.max()) for face in faces), 0)
+    place = np.zeros(count, dtype=complex)
+    for face in faces:
+        place[face.ring] = face.z
+    edge = np.sqrt(abs(np.imag(np.conj(layer.u) * layer.v)))
+    points = np.unique(np.concatenate([np.zeros(0, int), *(face.ring for face in faces)]))
+    turn, V = np.zeros(count), np.zeros((count, 3))
+    turn[points], V[points] = _lifted(domain, found.outline, place[points])
+    parts = panels.cornered(faces, layer.Q, turn, edge)
+    rings = [face.ring[corners] for face, corners in parts]
+    used = np.unique(np.concatenate([np.zeros(0, int), *rings]))
+    extra = np.setdiff1d(used, layer.Q)
+    whole = np.unique(layer.Q)
+    number = np.zeros(count, dtype=np.int64)
+    number[whole], number[extra] = np.arange(len(whole)), len(whole) + np.arange(len(extra))
+    areas = np.array([face.area for face, _ in parts])
+    layer = layer.kept(layer.Q)
+    edges = _edges(layer, [(number[face.ring[k]], face.z[k]) for face, k in parts])
+    return Trimmed(layer, V[extra], [number[ring] for ring in rings], areas, edges)
+
+
+def _lifted(domain, outline, z):
+    """(how far the boundary turns there (k,), points (k, 3) in space) of points z (k,)."""
+    points = shapely.points(np.stack([z.real, z.imag], axis=1))
+    at, off = outline.tree.query_nearest(points, return_distance=True, all_matches=False)
+    segment, rim = at[1], off <= NEAR * domain.size
+    a, b = outline.z[segment].T
+    along = np.clip(np.real((z - a) * np.conj(b - a)) / np.abs(b - a) ** 2, 0, 1)
+    ends = np.abs(np.stack([z - a, z - b], axis=1)) <= NEAR * domain.size
+    turn = np.where(ends, outline.turn[segment], 0)
+    turn = np.where(ends[:, 0], turn[:, 0], turn[:, 1])
+    one, two = np.moveaxis(domain.space[outline.vertex[segment]], 1, 0)
+    on_rim = one + along[:, None] * (two - one)
+    return turn * rim, np.where(rim[:, None], on_rim, domain.raised(z))
+
+
+def _edges(layer, rings):
+    """{"u": (k, 2), "v": (k, 2)}: sides of the rings (numbers, z) along lines of the grid."""
+    start, end = mesh.half_edges(layer.Q)
+    known = set(map(tuple, np.sort(np.stack([start, end], axis=1)).tolist()))
+    often, kinds = {}, {}
+    for ring, z in rings:
+        ij = coordinates(layer, z)
+        along = np.abs(np.roll(ij, -1, axis=1) - ij) < ON
+        along &= np.abs(ij - np.rint(ij)) < ON
+        pairs = np.sort(np.stack([ring, np.roll(ring, -1)], axis=1), axis=1)
+        for pair, on_v, on_u in zip(map(tuple, pairs.tolist()), *along, strict=True):
+            often[pair] = often.get(pair, 0) + 1
+            kinds[pair] = "u" if on_u else "v" if on_v else None
+    inner = sorted(pair for pair, count in often.items() if count == 2 and pair not in known)
+    return {
+        kind: np.array([pair for pair in inner if kinds[pair] == kind], dtype=np.int64).reshape(
+            -1, 2
+        )
+        for kind in "uv"
+    }
