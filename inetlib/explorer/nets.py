@@ -83,6 +83,8 @@ def _recipe(choice):
     if choice.kind == "cover":
         more = ', openings="fill"' * (choice.openings == "fill") + ", trim=True" * choice.trim
         recipe = recipe._replace(net=recipe.net.replace("{callback}", more + "{callback}"))
+    if choice.kind == "cover" and choice.trim:
+        recipe = recipe._replace(take="V, Q, _, polygons = {net}[:4]")
     return recipe
 
 

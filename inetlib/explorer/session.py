@@ -142,5 +142,7 @@ class Session:
             return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:], self.cover)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
-            io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
+            polygons, edges = (self.cover.polygons, self.cover.edges) if self.cover else ((), None)
+            curves = mesh.polylines(self.Q, edges) if suffix in io.WITH_CURVES else None
+            io.write(path, self.V, self.Q, curves, polygons)
             return path.read_bytes()
