@@ -192,6 +192,8 @@ class App:
         self.view.update()
         if self.fitted is None:
             self.look("fit")
+            if session.run is not None and session.choice.trim:
+                self.fitted = None  # the panels to the edge come in the end
         elif scene.is_lost(session.V, self.fitted):
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)

@@ -82,9 +82,9 @@ def _recipe(choice):
         recipe = recipe._replace(rooms="design, examples", start=example)
     if choice.kind == "cover":
         more = ', openings="fill"' * (choice.openings == "fill") + ", trim=True" * choice.trim
-        recipe = recipe._replace(net=recipe.net.replace("{callback}", more + "{callback}"))
-    if choice.kind == "cover" and choice.trim:
-        recipe = recipe._replace(take="V, Q, _, polygons = {net}[:4]")
+        take = "V, Q, _, polygons = {net}[:4]" if choice.trim else recipe.take
+        net = recipe.net.replace("{callback}", more + "{callback}")
+        recipe = recipe._replace(net=net, take=take)
     return recipe
 
 
