@@ -1,11 +1,12 @@
 """How often random surfaces are covered at random angles: rates by the family of the surface.
 
-python bench/random_surfaces.py [--surfaces 500] [--quads 400] [--seed 1]
+python bench/random_surfaces.py [--surfaces 500] [--quads 400] [--seed 1] [--family pierced]
 
-Six families, irregularly triangulated: saddles of order 2 to 4, domes up to a hemisphere and
-beyond, bumpy disks, strips, thin fins, canopies on 4 to 8 supports; angles uniform in (30, 150)
+Seven families, irregularly triangulated: saddles of order 2 to 4, domes up to a hemisphere and
+beyond, bumpy disks, strips, thin fins, canopies on 4 to 8 supports, bumpy disks with up to three openings and slivers; angles uniform in (30, 150)
 degrees.  A net is good when `measure` finds the angles and no flipped face and no dart;
-a cover that claims more than the judge finds stops the script."""
+a cover that claims more than the judge finds stops the script.  Surfaces with openings are
+trimmed: their panels have to leave no gap, and to have three to six corners."""
 
 import argparse
 import time
@@ -15,7 +16,7 @@ import numpy as np
 from scipy.spatial import Delaunay, KDTree
 from tqdm import tqdm
 
-from inetlib import design, measure
+from inetlib import design, measure, repair
 
 TOLERANCE = np.radians(1e-8)
 
@@ -101,13 +102,53 @@ def canopy(rng):
     return z, 0.3 * (1 - np.abs(z) ** 2) - rng.uniform(0.05, 0.5) * wave, F
 
 
-FAMILIES = saddle, dome, bumps, strip, fin, canopy
+def pierced(rng):
+    """A bumpy disk with up to three openings, triangulated so irregularly that it has slivers."""
+    holes = []
+    for _ in range(rng.integers(0, 4)):
+        radius = rng.uniform(0.03, 0.3)
+        centre = rng.uniform(0, 0.97 - radius) * np.exp(2j * np.pi * rng.uniform())
+        if all(abs(centre - other) > radius + wide + 0.03 for other, wide in holes):
+            holes.append((centre, radius))
+    z = disk(rng)[0]
+    z = z[np.all([abs(z - a) > 1.05 * r for a, r in holes] + [abs(z) < 2], axis=0)]
+    turns = [2 * np.pi * (np.arange(k) + rng.uniform(0, 0.8, k)) / k for k in (12, 30, 60)]
+    rims = [a + r * np.exp(1j * turns[k % 3]) for k, (a, r) in enumerate(holes)]
+    z, F = triangulated(np.concatenate([*rims, z]), 0.01)
+    middle = z[F].mean(axis=1)
+    F = F[np.all([abs(middle - a) > r for a, r in holes] + [abs(middle) < 2], axis=0)]
+    waves = rng.uniform(-1, 1, (3, 3)) * 5
+    height = sum(np.cos(a * z.real + b * z.imag + c) for a, b, c in waves)
+    return z, rng.uniform(0.02, 0.2) * height, F
 
 
-def outcome(V, F, angles, quads):
+FAMILIES = saddle, dome, bumps, strip, fin, canopy, pierced
+
+
+def faults(net, loops):
+    """What is wrong with the panels of a trimmed net on a surface with so many boundary loops."""
+    corners = {len(polygon) for polygon in net.polygons}
+    found = [f"corners: {corners}"] if not corners <= {3, 4, 5, 6} else []
+    sides = [
+        (a, b) for f in (*net.Q, *net.polygons) for a, b in zip(f, np.roll(f, -1), strict=True)
+    ]
+    free = dict(side for side in sides if side[::-1] not in set(sides))
+    if len(set(sides)) < len(sides):
+        found.append("two faces have one side")
+    rims = 0
+    while free:
+        rims, point = rims + 1, next(iter(free))
+        while point in free:
+            point = free.pop(point)
+    return found if rims == loops else [*found, f"{rims} rims, not {loops}"]
+
+
+def outcome(V, F, angles, quads, trim=False):
     """ "good", "said" (not converged, and said so) or the reason for a refusal; and the report."""
+    ways = {"trim": True, "openings": "fill"} if trim else {}
     try:
-        net = design.cover(V, F, *angles, count=quads)
+        net = design.cover(V, F, *angles, count=quads, **ways)
+        wrong = faults(net, len(repair.clean(V, F).loops)) if trim else []
     except ValueError as error:
         return f"refused: {error}", None
     quality = measure.quality(net.V, net.Q)
@@ -115,6 +156,8 @@ def outcome(V, F, angles, quads):
     good = off <= TOLERANCE and quality.flips == 0 and quality.darts == 0
     if net.report.converged and not good:
         raise SystemExit(f"the cover says {net.report.message}, the judge disagrees")
+    if wrong:
+        raise SystemExit(f"panels: {'; '.join(wrong)}")
     return "good" if net.report.converged else "said", net.report
 
 
@@ -123,16 +166,18 @@ def main():
     parser.add_argument("--surfaces", type=int, default=500)
     parser.add_argument("--quads", type=int, default=400)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--family", choices=[family.__name__ for family in FAMILIES])
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
-    table = {family.__name__: [] for family in FAMILIES}
+    chosen = [f for f in FAMILIES if options.family in (None, f.__name__)]
+    table = {family.__name__: [] for family in chosen}
     for k in tqdm(range(options.surfaces), unit=" surfaces"):
-        family = FAMILIES[k % len(FAMILIES)]
+        family = chosen[k % len(chosen)]
         xy, height, F = family(rng)
         V = np.stack([xy.real, xy.imag, height], axis=1)
         angles = rng.uniform(*np.radians([30, 150]), 2)
         start = time.perf_counter()
-        word, report = outcome(V, F, angles, options.quads)
+        word, report = outcome(V, F, angles, options.quads, family is pierced)
         table[family.__name__].append((word, report, time.perf_counter() - start))
         if word != "good":
             told = word if report is None else f"{report.message} ({report.darts} darts)"

@@ -131,6 +131,17 @@ _angle = _number("an angle above 0 and below 180 degrees", lambda x: 0 < x < 180
 _turn = _number("a finite number", lambda x: True, math.radians)
 _tolerance = _number("a positive number", lambda x: x > 0, math.radians)
 _positive = _number("a positive number", lambda x: x > 0)
+
+
+def _point(text):
+    """An argparse type: x,y,z."""
+    with contextlib.suppress(ValueError):
+        point = tuple(map(float, text.split(",")))
+        if len(point) == 3 and all(map(math.isfinite, point)):
+            return point
+    raise argparse.ArgumentTypeError(f"{text} is given, three finite numbers x,y,z are wanted")
+
+
 _whole = _number("a whole number from 1 upwards", lambda x: x >= 1 and x == int(x), int)
 _port = _number("a whole number from 0 to 65535", lambda x: x in range(65536), int)
 
@@ -207,6 +218,13 @@ def _cover_options(command):
     text = """of the u-lines, against the longest direction of the flattened surface, or
         against the direction around its hole (0)"""
     command.add_argument("--direction", type=_turn, default=0.0, metavar="DEG", help=text)
+    way = command.add_mutually_exclusive_group()
+    text = "u-lines follow its longest stretch without corners; --direction adds to this"
+    way.add_argument("--along", choices=("boundary",), help=text)
+    text = "u-lines go that way in space, --through a point or in the middle (--align=-1,0,0)"
+    way.add_argument("--align", type=_point, metavar="X,Y,Z", help=text)
+    text = "the point of the surface nearest to this one is a vertex of the net"
+    command.add_argument("--through", type=_point, metavar="X,Y,Z", help=text)
     _write_options(command, keep=True)
 
 
@@ -222,7 +240,7 @@ def _cover(given):
 
     asked = given.theta, given.theta0, given.quads, given.size, given.direction
     ways = {"tolerance": given.tolerance, "progress": _progress(given), "openings": given.openings}
-    ways["trim"] = given.trim
+    ways |= {name: getattr(given, name) for name in ("trim", "along", "align", "through")}
     with io.named(given.surface, V, counted=False):
         if given.piece is not None:
             from . import repair

@@ -10,11 +10,12 @@ from typing import NamedTuple
 
 import igl
 import numpy as np
+from numpy.typing import ArrayLike
 from tqdm import tqdm
 
 from .. import parallelogram, reference, repair, solver
 from ..solver.run import timed
-from . import flatten, opening, overlay
+from . import flatten, opening, overlay, steer
 from .report import Report, area_of, survey
 from .trim import trim as cut
 
@@ -58,6 +59,9 @@ def cover(
     boundary: str = "even",
     openings: str | None = None,
     trim: bool = False,
+    along: str | None = None,
+    through: ArrayLike | None = None,
+    align: ArrayLike | None = None,
     optimise: bool = True,
     tolerance: float = 1e-11,
     progress: bool = False,
@@ -72,6 +76,11 @@ def cover(
                    disks; over a ring the u-lines then follow both boundaries (direction=0)
     openings       "fill": a hole is an opening, the curves run on across it; "ring", and None if
                    there is one hole: the net closes around it; more holes are openings
+    along          "boundary": u-lines follow the longest stretch of it without corners, as well
+                   as one direction in the plane can
+    align          (x, y, z): u-lines go that way in space, at the point `through` or else in the
+                   middle of the surface; direction adds to this, and to along
+    through        (x, y, z): a grid point is the point of the surface nearest to it, and stays
     trim           fill the strip between the whole quads and the boundary, by cut panels
     optimise       move the vertices until the angles are exact up to `tolerance` (else: nearly)
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
@@ -80,8 +89,8 @@ def cover(
     The surface is a disk with any number of holes, in one piece; the net has whole quads only
     and leaves less than a quad's width free at the boundary, or cut panels there.  Over a ring it
     closes, with the nearest size and direction for which it can.  ValueError for input that
-    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net that is
-    off is returned, not raised."""
+    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net
+    that is off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
     if size is None:
@@ -90,6 +99,7 @@ def cover(
         size = parallelogram.check_positive("size", size)
     if not np.isfinite(direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
+    through, align = steer.check(along, through, align)
     seconds = {}
     stage = partial(_stage, seconds, progress)
     with stage("check"):
@@ -98,29 +108,39 @@ def cover(
         goal = reference.mesh(surface.V, surface.F)
     with stage("flatten"):
         W, flat = _flatten(surface, filled, boundary)
+        flat, turn = steer.steered(flat, W, along, through, align)
     with stage("grid"):
         domain = overlay.Domain(flat, W)
-        layer = overlay.cover(domain, theta, theta0, count, size, direction)
+        layer = overlay.cover(domain, theta, theta0, count, size, direction + turn)
         edge = cut(domain, layer) if trim else None
         layer = edge.layer if trim else layer
+    pinned = np.flatnonzero(~layer.ij.any(axis=1)) if through is not None else []
     net, done, words = layer.V, False, "not optimised"
     if optimise:
         with timed(seconds, "optimise"):
-            net, done, words = _optimise(layer, theta, theta0, goal, tolerance, progress, callback)
+            ways = {"reference": goal, "tolerance": tolerance, "progress": progress}
+            ways["fixed"] = pinned if len(pinned) else None
+            net, done, words = _optimise(layer, theta, theta0, callback, ways)
     with stage("report"):
         polygons = edge.polygons if trim else []
         net = np.concatenate([net, edge.extra]) if trim else net
         found = survey(net, layer.Q, theta, theta0, goal, flat, polygons)
-    if done and found.distance_max > AWAY:
-        words += f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
-        triangles = np.linalg.norm(surface.V[surface.F[:, 1]] - surface.V[surface.F[:, 0]], axis=1)
-        coarse = triangles.mean() > found.edge_mean
-        words += ": its triangles are coarser" if coarse else ": ask for more quads"
+    words += _away(found, surface) if done else ""
     found = found._replace(converged=done, message=words, winding=layer.winding)
     found = found._replace(repairs=tuple(surface.repairs), seconds=seconds)
     if not trim:
         return Cover(net, layer.Q, found, [])
     return Cover(net, layer.Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
+
+
+def _away(found, surface):
+    """What there is to say of a net that is not on its surface."""
+    if found.distance_max <= AWAY:
+        return ""
+    words = f", but up to {100 * found.distance_max:.2g} % of the diagonal off the surface"
+    triangles = np.linalg.norm(surface.V[surface.F[:, 1]] - surface.V[surface.F[:, 0]], axis=1)
+    coarse = triangles.mean() > found.edge_mean
+    return words + (": its triangles are coarser" if coarse else ": ask for more quads")
 
 
 def _flatten(surface, filled, boundary):
@@ -144,7 +164,7 @@ def _stage(seconds, progress, name):
         yield
 
 
-def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
+def _optimise(layer, theta, theta0, callback, ways):
     """(V, converged, message) of the first attempt that is good, else of the best one."""
     stopped, area, tried = False, area_of(layer.V, layer.Q), []
 
@@ -153,7 +173,7 @@ def _optimise(layer, theta, theta0, goal, tolerance, progress, callback):
         stopped = callback is not None and callback(step, V, layer.Q) is False
         return not stopped
 
-    common = dict(reference=goal, tolerance=tolerance, progress=progress, callback=ask)
+    common, goal = {**ways, "callback": ask}, ways["reference"]
     if not ask(None, layer.V):
         return layer.V, False, "stopped by the caller before the first step"
     for options in ATTEMPTS:

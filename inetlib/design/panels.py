@@ -8,13 +8,13 @@ import numpy as np
 import shapely
 
 from .. import mesh, ties
+from ..reference import CORNER
 from . import overlay
 from .regions import NONE, Regions, sides
 
 SLIVER = 0.1  # of a quad: smaller faces become parts of their neighbours
 MOST = 6  # corners
-CORNER = np.radians(30)  # a boundary that turns by more has a corner there
-BULGE = 0.1  # of an edge: a boundary farther from the side of a panel gets a corner, too
+BULGE = 0.1  # of an edge: a boundary farther from a side gets a corner; one too many, at 2 BULGE
 
 
 class Face(NamedTuple):
@@ -157,7 +157,7 @@ def _corners(face, owner, turn, edge, forced):
         far, where = max(_bulges(z, free, chosen), default=(0, None), key=lambda one: one[0])
         sound = len(chosen) > 2 and shapely.is_valid(_polygon(z[chosen]))
         sound = sound and Face(ring[chosen], z[chosen]).area > 0
-        if where is None or (sound and (far < BULGE * edge or len(chosen) >= MOST)):
+        if where is None or (sound and far < BULGE * edge * (1 if len(chosen) < MOST else 2)):
             return chosen
         chosen = np.union1d(chosen, where)
 
