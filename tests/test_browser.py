@@ -148,6 +148,11 @@ def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
     reader.choose("kind", choices.OPTIONS["kind"]["plane"])
     assert not switch.is_visible() and not cut.is_visible()
     judge(reader)
+    reader.page.goto(f"{reader.address}?kind=cover&quads=60&trim=1")
+    reader.page.wait_for_selector(".out-cut:not(:empty)")
+    reader.settled()
+    seen = reader.picture()
+    assert is_drawn(seen) and np.abs(seen[:, [2, -3]] - seen[-5, 5]).max() < 30  # all is in view
 
 
 def test_the_profile_can_be_edited(tab):
@@ -295,6 +300,10 @@ def test_light_and_dark(tab):
     reader = tab("m=8&n=8", color_scheme="dark")
     dark = reader.picture()
     assert dark[-5, 5].max() < 60 and is_drawn(dark)
+    reader.page.set_viewport_size({"width": 390, "height": 640})
+    below = image(reader.page.locator(".out-histogram").screenshot())
+    assert below[0, 0].max() < 60  # what is scrolled to is dark, too
+    reader.page.set_viewport_size({"width": 1000, "height": 640})
     reader.page.get_by_title("Light or dark").click()
     reader.settled()
     light = reader.picture()

@@ -120,7 +120,8 @@ class App:
         if name == "fit":
             sight = scene.sight("cover" if self.session.given else self.session.choice.kind, V)
         if V is not None and sight is not None:
-            self.sight, self.fitted = sight, V
+            grows = self.session.run is not None and self.session.choice.trim  # in the end
+            self.sight, self.fitted = sight, None if grows else V
             self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
 
     def _soon(self, remake):
@@ -192,8 +193,6 @@ class App:
         self.view.update()
         if self.fitted is None:
             self.look("fit")
-            if session.run is not None and session.choice.trim:
-                self.fitted = None  # the panels to the edge come in the end
         elif scene.is_lost(session.V, self.fitted):
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)

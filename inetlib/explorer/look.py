@@ -26,7 +26,7 @@ class Palette(NamedTuple):
 
 
 RIM = {"rim": plot.GREY}  # the edge of panels that are cut there
-LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", "#c9d4e0", plot.COLOURS | RIM)
+LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", "#bccad9", plot.COLOURS | RIM)
 BRIGHT = {"u": "#7db0ff", "v": "#ff8f5e", "d1": "#45d6ab", "d2": "#ffd04a"}
 DARK = Palette("#11161d", "#434f5d", "#6d88a8", "#586878", BRIGHT | RIM)
 
