@@ -3,10 +3,10 @@
 python bench/random_surfaces.py [--surfaces 500] [--quads 400] [--seed 1] [--family pierced]
 
 Seven families, irregularly triangulated: saddles of order 2 to 4, domes up to a hemisphere and
-beyond, bumpy disks, strips, thin fins, canopies on 4 to 8 supports, bumpy disks with up to three openings and slivers; angles uniform in (30, 150)
-degrees.  A net is good when `measure` finds the angles and no flipped face and no dart;
-a cover that claims more than the judge finds stops the script.  Surfaces with openings are
-trimmed: their panels have to leave no gap, and to have three to six corners."""
+beyond, bumpy disks, strips, thin fins, canopies on 4 to 8 supports, bumpy disks with up to three
+openings and slivers; angles uniform in (30, 150) degrees.  A net is good when `measure` finds the
+angles and no flipped face and no dart; a cover that claims more than the judge finds stops the
+script.  Surfaces with openings are trimmed: their panels leave no gap, and have 3 to 6 corners."""
 
 import argparse
 import time
@@ -132,8 +132,9 @@ def faults(net, loops):
     sides = [
         (a, b) for f in (*net.Q, *net.polygons) for a, b in zip(f, np.roll(f, -1), strict=True)
     ]
-    free = dict(side for side in sides if side[::-1] not in set(sides))
-    if len(set(sides)) < len(sides):
+    known = set(sides)
+    free = dict(side for side in sides if side[::-1] not in known)
+    if len(known) < len(sides):
         found.append("two faces have one side")
     rims = 0
     while free:

@@ -103,11 +103,18 @@ def _partner(sliver, faces, owner):
     keys = np.array(sorted(common))
     length = np.array([common[k] for k in keys])
     rank = ties.ranks(-length, ties.TIE * length.sum()) if len(keys) else []
+    later = None, None
     for k in np.lexsort([rank, keys < 0]):
         both = _joined(face, faces[keys[k]])
-        if both is not None and fixed(both, owner).sum() <= MOST:
-            return int(keys[k]), both
-    return None, None
+        if both is not None:
+            corners = np.flatnonzero(fixed(both, owner))
+            if len(corners) <= MOST:
+                return int(keys[k]), both
+            parts = _split(both, corners)
+            if len(parts) > 1 and later[1] is None:
+                least = min(part.area for part, _ in parts)
+                later = (int(keys[k]), both) if least > 2 * face.area else later
+    return later
 
 
 def _joined(one, two):
@@ -157,7 +164,10 @@ def _corners(face, owner, turn, edge, forced):
         far, where = max(_bulges(z, free, chosen), default=(0, None), key=lambda one: one[0])
         sound = len(chosen) > 2 and shapely.is_valid(_polygon(z[chosen]))
         sound = sound and Face(ring[chosen], z[chosen]).area > 0
-        if where is None or (sound and far < BULGE * edge * (1 if len(chosen) < MOST else 2)):
+        if where is None:
+            return chosen
+        full = 0.5 if turn[ring[where]] > CORNER else 2  # these make two panels of one
+        if sound and far < BULGE * edge * (1 if len(chosen) < MOST else full):
             return chosen
         chosen = np.union1d(chosen, where)
 

@@ -11,7 +11,8 @@ from . import opening, overlay
 
 NEAR = 1e-9  # of the size of the domain: points this close are one
 GRID = 1e-12  # of the size: to which the crossings are rounded
-MIDDLES = np.array([(0, 0.5), (0.5, 0), (1, 0.5), (0.5, 1)])  # of the edges of a quad, in a cell
+CORNERS = np.array([(0, 1), (0, 0), (1, 0), (1, 1)])  # of a quad, in a cell
+SIDES = np.stack([CORNERS, np.roll(CORNERS, -1, axis=0)], axis=1)
 NONE = "not one whole quad is left beside the cut ones: ask for more"
 ROUNDS = 20  # in which whole quads that are touched are cut, too
 
@@ -101,7 +102,7 @@ def regions(domain: overlay.Domain, layer: overlay.Layer) -> Regions:
         i, j = _cut_cells(domain, layer, edge)
         faces, more = _faces(layer, edge, i, j, lines)
         rings, z = _numbered(domain, layer, faces)
-        touched = _touched(domain, layer, rings, edge.tree)
+        touched = _touched(domain, layer, rings, edge)
         if not len(more) and not touched.any():
             return Regions(layer, rings, z, edge)
         lines = np.concatenate([lines, more])
@@ -181,18 +182,20 @@ def _numbered(domain, layer, faces):
     return [p for p, _ in pairs], [r for _, r in pairs]
 
 
-def _touched(domain, layer, rings, tree):
+def _touched(domain, layer, rings, edge):
     """Whether each whole quad (f,) has an edge that no other face has, and not the boundary."""
     start, end = mesh.half_edges(layer.Q)
     free = np.flatnonzero(mesh.opposites(layer.Q) < 0)
     known = {pair for ring in rings for pair in sides(ring)}
     pairs = zip(end[free].tolist(), start[free].tolist(), strict=True)
     lonely = free[[pair not in known for pair in pairs]]
-    i, j = (layer.ij[layer.Q[lonely // 4, 1]] + MIDDLES[lonely % 4]).T
-    middle = shapely.points(_xy(i * layer.u + j * layer.v))
-    (found, _), off = tree.query_nearest(middle, return_distance=True, all_matches=False)
     touched = np.zeros(len(layer.Q), dtype=bool)
-    touched[lonely[found[off > NEAR * domain.size]] // 4] = True
+    if len(lonely):
+        ij = layer.ij[layer.Q[lonely // 4, 1]][:, None] + SIDES[lonely % 4]
+        lines = shapely.linestrings(_xy(ij @ [layer.u, layer.v]))
+        rim = shapely.buffer(edge.polygon.boundary, NEAR * domain.size)
+        off = shapely.length(shapely.difference(lines, rim))
+        touched[lonely[off > NEAR * domain.size] // 4] = True
     return touched
 
 
