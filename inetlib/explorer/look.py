@@ -59,7 +59,7 @@ class Layout(NamedTuple):
 
     means: arrays (k, s) of vertices of the net; their means are further vertices, in order;
     quads (f, 4), triangles (t, 3) and those of cut panels, cut (c, 3), are filled; lines:
-    {family: (k, 2)} segments, and with cut panels those of their "rim"."""
+    {family: (k, 2)} segments, and with cut panels the rest of their sides as "rim"."""
 
     means: list
     quads: np.ndarray
@@ -102,9 +102,10 @@ def layout(Q, count, families, parallelograms=False, cover=None) -> Layout:
         cut = repair.triangulate(cover.V, cover.polygons)
         lines |= {name: np.concatenate([lines[name], cover.edges[name]]) for name in "uv"}
         more = [np.stack([p, np.roll(p, -1)], axis=1) for p in cover.polygons]
-        pairs = np.sort(np.concatenate([sides, *more]), axis=1)
-        pairs, shared = np.unique(pairs, axis=0, return_counts=True)
-        rim = {"rim": pairs[shared == 1]}
+        every = np.unique(np.concatenate([edges, np.sort(np.concatenate(more), axis=1)]), axis=0)
+        pairs = np.concatenate([every, lines["u"], lines["v"]])
+        pairs, times = np.unique(pairs, axis=0, return_counts=True)
+        rim = {"rim": pairs[times == 1]}  # sides of panels on no curve
     return Layout(means, quads, triangles, cut, {name: lines[name] for name in families} | rim)
 
 
