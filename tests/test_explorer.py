@@ -422,7 +422,7 @@ def test_three_lines_of_python_find_exactly_the_same_net(values):
     assert parse(link(found.choice)) == (found.choice, [])
 
 
-TRIMMED = {"roof": "ring", "saddle": "ring", "skylight": "fill", "two_skylights": "ring"}
+TRIMMED = {"saddle": "ring", "skylight": "fill", "two_skylights": "ring"}
 
 
 @pytest.fixture(scope="module", params=TRIMMED)
@@ -472,14 +472,17 @@ def test_panels_to_the_edge_are_in_the_code_the_link_and_in_files(trimmed, tmp_p
     polygons = [polygon.tolist() for polygon in trimmed.cover.polygons]
     assert [polygon.tolist() for polygon in names["polygons"]] == polygons
     assert parse(link(trimmed.choice)) == (trimmed.choice, [])
-    path = tmp_path / "net.ply"
-    path.write_bytes(trimmed.save(".ply"))
+    path = tmp_path / "net.obj"
+    path.write_bytes(trimmed.save(".obj"))
     V, faces = io.read(path)
     assert np.array_equal(V, trimmed.V)
     assert [list(face) for face in faces] == [*trimmed.Q.tolist(), *polygons]
-    svg = trimmed.save(".svg", -1.0, 0.5).decode()
-    assert plot.GREY in svg
-    assert trimmed.change(trim=False) == [] and trimmed.change(trim=True) == []
+    lines = [row.split()[1:] for row in path.read_text().splitlines() if row.startswith("l ")]
+    ends = {int(line[k]) - 1 for line in lines for k in (0, -1)}
+    plan = look.layout(trimmed.Q, len(V), (), False, trimmed.cover)
+    assert len(ends & set(plan.lines["rim"].ravel().tolist())) > 20  # the curves reach the edge
+    if trimmed.choice.source == "saddle":
+        assert plot.GREY in trimmed.save(".svg", -1.0, 0.5).decode()
 
 
 def test_only_a_surface_with_one_hole_can_be_a_ring_or_have_an_opening(tmp_path):
@@ -494,9 +497,9 @@ def test_only_a_surface_with_one_hole_can_be_a_ring_or_have_an_opening(tmp_path)
     io.write(path, *examples.saddle_with_hole(8))
     assert Session(io.surface(path), path).has_one_hole is True
     for openings, same_as in (("ring", None), ("fill", "fill")):
-        found = built(kind="cover", source="saddle", quads=150, openings=openings)
+        found = built(kind="cover", source="saddle", quads=60, openings=openings)
         angles = np.radians([60, 60])
-        V = design.cover(*examples.saddle_with_hole(), *angles, 150, openings=same_as).V
+        V = design.cover(*examples.saddle_with_hole(), *angles, 60, openings=same_as).V
         assert np.array_equal(found.V, V)
 
 
