@@ -79,9 +79,9 @@ class Reader:
 
     def net(self):
         """V, Q made by the three lines of Python that the page offers."""
-        made = {}
-        exec(self.page.evaluate("trame.state.get('code')"), made)
-        return made["V"], made["Q"]
+        self.made = {}  # all names that they give a value
+        exec(self.page.evaluate("trame.state.get('code')"), self.made)
+        return self.made["V"], self.made["Q"]
 
     def drag(self, name, part):
         """Drag a slider's thumb to a part of its track, as a hand does."""

@@ -124,6 +124,37 @@ def test_every_kind_of_net_can_be_chosen(tab):
     judge(reader)
 
 
+def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
+    reader = tab("kind=cover&source=skylight&quads=200")
+    switch, cut = (reader.page.locator(name) for name in (".in-trim", ".out-cut"))
+    assert switch.is_visible() and not cut.is_visible()
+    judge(reader)
+    reader.choose("openings", choices.OPTIONS["openings"]["fill"])
+    seen = [reader.picture()]
+    switch.locator("input").check()
+    reader.settled()
+    judge(reader)
+    whole, cut_ones = (len(reader.made[name]) for name in ("Q", "polygons"))
+    assert cut.inner_text() == f"{whole} whole, {cut_ones} cut"
+    assert reader.page.locator("h2", has_text=f"Over all {whole} faces").is_visible()
+    seen.append(reader.picture())
+    before, after = ((np.abs(x - x[-5, 5]).sum(axis=-1) > 30).sum() for x in seen)
+    assert after > 1.1 * before  # more is covered
+    choice = reader.choice()
+    assert choice.trim and choice.openings == "fill"
+    reader.choose("source", choices.OPTIONS["source"]["two_skylights"])
+    assert not reader.page.locator(".in-openings").is_visible()
+    assert re.fullmatch(r"\d+ whole, \d+ cut", cut.inner_text())
+    reader.choose("kind", choices.OPTIONS["kind"]["plane"])
+    assert not switch.is_visible() and not cut.is_visible()
+    judge(reader)
+    reader.page.goto(f"{reader.address}?kind=cover&quads=60&trim=1")
+    reader.page.wait_for_selector(".out-cut:not(:empty)")
+    reader.settled()
+    seen = reader.picture()[40:]  # below the shadow of the bar
+    assert is_drawn(seen) and np.abs(seen[:, [2, -3]] - seen[-5, 5]).max() < 30  # all is in view
+
+
 def test_the_profile_can_be_edited(tab):
     reader = tab("kind=revolution&m=8&n=6")
     reader.page.get_by_role("button", name="barrel").click()
@@ -269,6 +300,10 @@ def test_light_and_dark(tab):
     reader = tab("m=8&n=8", color_scheme="dark")
     dark = reader.picture()
     assert dark[-5, 5].max() < 60 and is_drawn(dark)
+    reader.page.set_viewport_size({"width": 390, "height": 640})
+    below = image(reader.page.locator(".out-histogram").screenshot())
+    assert below[0, 0].max() < 60  # what is scrolled to is dark, too
+    reader.page.set_viewport_size({"width": 1000, "height": 640})
     reader.page.get_by_title("Light or dark").click()
     reader.settled()
     light = reader.picture()
@@ -281,6 +316,7 @@ STATES = [
     "kind=revolution&families=u,v,d1,d2&parallelograms=1",
     "kind=freeform&theta0=45",
     "kind=cover&quads=100&shade=1",
+    "kind=cover&source=skylight&quads=200&trim=1",
     "theta=1&theta0=179",
 ]
 CROWDED = """() => {

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.image import imread
 
-from inetlib import examples, io, loxodrome, measure, mesh, parallelogram, plot, surfaces
+from inetlib import design, examples, io, loxodrome, measure, mesh, parallelogram, plot, surfaces
 from inetlib.explorer import choices, look, nets, plates, session
 from inetlib.explorer.choices import Choice, changed, link, parse
 from inetlib.explorer.session import Session
@@ -239,7 +239,7 @@ kind=cover&source=saddle&quads=60&direction=20.5 56 6.02313761
 def test_links_of_an_earlier_version_open_the_same_nets(line):
     query, faces, size = line.split()
     choice, problems = parse(query)
-    V, Q, _ = nets.make(choice)
+    V, Q, *_ = nets.make(choice)
     assert problems == [] and len(Q) == int(faces)
     assert np.linalg.norm(V) == pytest.approx(float(size), rel=1e-8)
 
@@ -420,6 +420,87 @@ def test_three_lines_of_python_find_exactly_the_same_net(values):
     assert found.message.startswith("converged")
     assert same(found.code(), found.V, found.Q)
     assert parse(link(found.choice)) == (found.choice, [])
+
+
+TRIMMED = {"saddle": "ring", "skylight": "fill", "two_skylights": "ring"}
+
+
+@pytest.fixture(scope="module", params=TRIMMED)
+def trimmed(request):
+    """A session with panels to the edge of an example."""
+    choice = {"kind": "cover", "source": request.param, "openings": TRIMMED[request.param]}
+    return built(theta=70, theta0=50, quads=150, trim=True, **choice)
+
+
+def area(V, *cells):
+    """The area of triangles and quads."""
+    return sum(igl.doublearea(*mesh.triangles(V, F)).sum() / 2 for F in cells if len(F))
+
+
+def test_with_panels_to_the_edge_all_of_the_surface_is_drawn_and_every_side_once(trimmed):
+    V, Q, polygons = trimmed.V, trimmed.Q, trimmed.cover.polygons
+    assert off(V, Q, (70, 50)).max() < 1e-8 and trimmed.message.startswith("converged")
+    texts = plates.numbers(trimmed.report, V, Q)
+    assert (texts["quads"], texts["cut"]) == (str(len(Q)), str(len(polygons)))
+    plan = look.layout(Q, len(V), ("u", "v"), False, trimmed.cover)
+    surface = examples.SURFACES[trimmed.choice.source]()
+    whole = area(*surface)
+    assert area(V, plan.quads) < 0.9 * whole
+    assert area(V, plan.quads, plan.cut) == pytest.approx(whole, rel=0.02)
+    sides = edges(np.concatenate([np.stack([x, np.roll(x, -1)]).T for x in [*Q, *polygons]]))
+    assert edges(np.concatenate(list(plan.lines.values()))) == sorted(set(sides))
+    rim = set(edges(plan.lines["rim"]))
+    free = [side for side in sides if sides.count(side) == 1]
+    assert len(rim - set(free)) < 0.05 * len(rim) and set(free) - rim == set()
+    loops = [np.stack([x, np.roll(x, -1)]).T for x in mesh.boundary_loops(surface[1])]
+    points = V[free].reshape(-1, 3)
+    near, _, _ = igl.point_mesh_squared_distance(points, surface[0], np.concatenate(loops))
+    assert np.sqrt(near).max() < 1e-9
+    assert sorted(plan.lines) == ["rim", "u", "v"]
+    palette = look.fills(plan, look.LIGHT)[[0, -1]]
+    assert len(np.unique(palette, axis=0)) == 2  # one sees which are cut
+    shade = np.full((len(Q), 3), 7, dtype=np.uint8)
+    for one in (plan, look.layout(Q, len(V), FAMILIES, True, trimmed.cover)):
+        rgb = look.fills(one, look.LIGHT, shade)
+        assert np.all(rgb[: -len(one.cut)] == 7) and np.all(rgb[-len(one.cut) :] == palette[1])
+
+
+def test_panels_to_the_edge_are_in_the_code_the_link_and_in_files(trimmed, tmp_path):
+    names = {}
+    assert same(trimmed.code(), trimmed.V, trimmed.Q)
+    exec(trimmed.code(), names)
+    polygons = [polygon.tolist() for polygon in trimmed.cover.polygons]
+    assert [polygon.tolist() for polygon in names["polygons"]] == polygons
+    assert parse(link(trimmed.choice)) == (trimmed.choice, [])
+    path = tmp_path / "net.obj"
+    path.write_bytes(trimmed.save(".obj"))
+    V, faces = io.read(path)
+    assert np.array_equal(V, trimmed.V)
+    assert [list(face) for face in faces] == [*trimmed.Q.tolist(), *polygons]
+    lines = [row.split()[1:] for row in path.read_text().splitlines() if row.startswith("l ")]
+    ends = {int(line[k]) - 1 for line in lines for k in (0, -1)}
+    plan = look.layout(trimmed.Q, len(V), (), False, trimmed.cover)
+    assert len(ends & set(plan.lines["rim"].ravel().tolist())) > 20  # the curves reach the edge
+    if trimmed.choice.source == "saddle":
+        assert plot.GREY in trimmed.save(".svg", -1.0, 0.5).decode()
+
+
+def test_only_a_surface_with_one_hole_can_be_a_ring_or_have_an_opening(tmp_path):
+    made, asked = Session(), {}
+    for source in PICKED["source"]:
+        made.change(kind="cover", source=source)
+        asked[source] = made.has_one_hole
+    assert [source for source, one in asked.items() if one] == ["saddle", "skylight"]
+    made.change(kind="plane", source="saddle")
+    assert made.has_one_hole is False
+    path = tmp_path / "ring.obj"
+    io.write(path, *examples.saddle_with_hole(8))
+    assert Session(io.surface(path), path).has_one_hole is True
+    for openings, same_as in (("ring", None), ("fill", "fill")):
+        found = built(kind="cover", source="saddle", quads=60, openings=openings)
+        angles = np.radians([60, 60])
+        V = design.cover(*examples.saddle_with_hole(), *angles, 60, openings=same_as).V
+        assert np.array_equal(found.V, V)
 
 
 @pytest.mark.parametrize("name", ["my roof.obj", 'it\'s "mine".ply', "a\\b {c}.off"])

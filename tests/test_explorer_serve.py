@@ -23,7 +23,7 @@ import pytest
 from matplotlib.image import imread
 from test_explorer import built
 
-from inetlib import examples, io, mesh, surfaces, view
+from inetlib import design, examples, io, mesh, surfaces, view
 from inetlib.explorer import choices, look, nets, notebook, plates
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.session import Session
@@ -426,6 +426,14 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
             rgb = np.unique(scene.curves.cell_data["rgb"], axis=0)
             hexes = {"#{:02x}{:02x}{:02x}".format(*c) for c in rgb.tolist()}
             assert hexes == {palette.families[name] for name in families}
+    cover = design.cover(*examples.wavy_roof(10), *np.radians([60, 60]), 40, trim=True)
+    scene.show(*cover[:2], Choice(), False, None, cover)
+    plan = look.layout(cover.Q, len(cover.V), ("u", "v"), False, cover)
+    cells = [*plan.quads.tolist(), *plan.cut.tolist()]
+    assert [list(cell.point_ids) for cell in scene.faces.cell] == cells
+    assert len(cells) > len(cover.Q) and scene.curves.n_cells == sum(map(len, plan.lines.values()))
+    scene.show(*cover[:2], Choice())
+    assert scene.faces.n_cells == len(cover.Q)  # on the way they are not there
     shade = np.arange(3 * len(Q), dtype=np.uint8).reshape(-1, 3)
     scene.show(V, Q, Choice(), False, shade)
     assert np.array_equal(scene.faces.cell_data["rgb"], shade)

@@ -13,6 +13,7 @@ from . import overlay
 from .regions import NONE, Regions, sides
 
 SLIVER = 0.1  # of a quad: smaller faces become parts of their neighbours
+STRAIGHT = 0.01  # radians: a line of the grid turns by less
 MOST = 6  # corners
 BULGE = 0.1  # of an edge: a boundary farther from a side gets a corner; one too many, at 2 BULGE
 
@@ -40,11 +41,14 @@ def over(face: Face, owner: dict) -> list:
 
 
 def fixed(face: Face, owner: dict) -> np.ndarray:
-    """Which points (k,) have another neighbour on each side, or a quad (its key is negative)."""
+    """Which points (k,) have another neighbour on each side, or one with a corner there, too."""
     after = over(face, owner)
     before = after[-1:] + after[:-1]
-    pairs = zip(before, after, strict=True)
-    return np.array([a != b or (a is not None and a < 0) for a, b in pairs])
+    way = np.roll(face.z, -1) - face.z
+    bent = np.abs(np.angle(way / np.roll(way, 1))) > STRAIGHT
+    whole = np.array([key is not None and key < 0 for key in after])
+    inner = np.array([key is not None for key in after])
+    return np.array([a != b for a, b in zip(before, after, strict=True)]) | whole | inner & bent
 
 
 def merged(found: Regions) -> tuple[overlay.Layer, list]:
@@ -65,7 +69,7 @@ def merged(found: Regions) -> tuple[overlay.Layer, list]:
     queue = [int(k) for k in order if area[k] < SLIVER * cell]
     while queue:
         sliver = queue.pop(0)
-        other, face = _partner(sliver, faces, owner)
+        other, face = _partner(sliver, faces, owner, cell)
         if face is None:
             continue
         for side in (*sides(faces[sliver].ring), *sides(faces[other].ring)):
@@ -93,8 +97,10 @@ def _quad(layer, q):
     return Face(layer.Q[q], corners @ [layer.u, layer.v])
 
 
-def _partner(sliver, faces, owner):
-    """(key, what both become): the cut neighbour, else quad, with the longest common side."""
+def _partner(sliver, faces, owner, cell):
+    """(key, what both become) of the neighbour with the longest common side.
+
+    A cut one that is no sliver, else a quad, else another sliver."""
     face, common = faces[sliver], {}
     lengths = np.abs(np.roll(face.z, -1) - face.z)
     for key, length in zip(over(face, owner), lengths, strict=True):
@@ -104,7 +110,8 @@ def _partner(sliver, faces, owner):
     length = np.array([common[k] for k in keys])
     rank = ties.ranks(-length, ties.TIE * length.sum()) if len(keys) else []
     later = None, None
-    for k in np.lexsort([rank, keys < 0]):
+    small = np.array([k >= 0 and faces[k].area < SLIVER * cell for k in keys], dtype=int)
+    for k in np.lexsort([rank, 2 * small + (keys < 0)]):
         both = _joined(face, faces[keys[k]])
         if both is not None:
             corners = np.flatnonzero(fixed(both, owner))
@@ -162,8 +169,7 @@ def _corners(face, owner, turn, edge, forced):
     chosen = np.union1d(np.flatnonzero(must), sharp[: max(0, MOST - must.sum())])
     while True:
         far, where = max(_bulges(z, free, chosen), default=(0, None), key=lambda one: one[0])
-        sound = len(chosen) > 2 and shapely.is_valid(_polygon(z[chosen]))
-        sound = sound and Face(ring[chosen], z[chosen]).area > 0
+        sound = _is_sound(z[chosen])
         if where is None:
             return chosen
         full = 0.5 if turn[ring[where]] > CORNER else 2  # these make two panels of one
@@ -223,8 +229,15 @@ def _split(face, corners):
             way = shapely.LineString(np.stack([face.z[[a, b]].real, face.z[[a, b]].imag], axis=1))
             if least > best * (1 + ties.TIE) and region.covers(way):
                 places = [np.flatnonzero(np.isin(k, corners)) for k in (inner, outer)]
-                best, parts = least, list(zip(halves, places, strict=True))
+                both = list(zip(halves, places, strict=True))
+                if all(_is_sound(half.z[k]) for half, k in both):
+                    best, parts = least, both
     return [(face, corners)] if parts is None else [x for part in parts for x in _split(*part)]
+
+
+def _is_sound(z):
+    """Whether points are the corners of a polygon without crossings, counter-clockwise."""
+    return len(z) > 2 and Face(z, z).area > 0 and bool(shapely.is_valid(_polygon(z)))
 
 
 def _polygon(z):

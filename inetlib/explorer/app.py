@@ -19,7 +19,7 @@ NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewh
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
 TEXTS = "alert", "problem", "message", "progress", "code", "link"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
-OFF = "dark", "searching", "can_search", "code_open", "help_open"
+OFF = "dark", "searching", "can_search", "code_open", "help_open", "has_one_hole"
 
 
 class App:
@@ -120,7 +120,8 @@ class App:
         if name == "fit":
             sight = scene.sight("cover" if self.session.given else self.session.choice.kind, V)
         if V is not None and sight is not None:
-            self.sight, self.fitted = sight, V
+            grows = self.session.run is not None and self.session.choice.trim  # in the end
+            self.sight, self.fitted = sight, None if grows else V
             self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
 
     def _soon(self, remake):
@@ -188,7 +189,7 @@ class App:
         if session.V is None:
             return
         shade = session.colours() if session.choice.shade else None
-        self.scene.show(session.V, session.Q, session.choice, state.dark, shade)
+        self.scene.show(session.V, session.Q, session.choice, state.dark, shade, session.cover)
         self.view.update()
         if self.fitted is None:
             self.look("fit")
@@ -204,6 +205,7 @@ class App:
         state.parallelogram_svg = plates.parallelogram(*angles)
         state.profile_svg = plates.profile(choice.radii)
         state.code, state.link = self.session.code(), choices.link(choice)
+        state.has_one_hole = self.session.has_one_hole
         if self.server.protocol and not self.session.given:
             self.server.js_call("address", "exec", state.link)
 

@@ -29,7 +29,14 @@ OPTIONS = {
         "roof": "Roof (example)",
         "saddle": "Saddle with a hole (example)",
         "shell": "Hanging shell (example)",
+        "skylight": "One skylight (example)",
+        "two_skylights": "Two skylights (example)",
+        "five_skylights": "Five skylights (example)",
         "file": "The file of the command line",
+    },
+    "openings": {  # of a surface with one hole; more are openings by themselves
+        "ring": "Ring, closed around it",
+        "fill": "Opening, curves go across",
     },
 }
 PROFILES = {
@@ -103,6 +110,8 @@ class Choice:
     radii: tuple = _of(RADIUS, PROFILES["vase"])
     quads: int = _of(Range(10, 20000, 10, whole=True), 800)
     direction: float = _of(Range(-90, 90, 1, "\u00b0"), 0.0)
+    openings: str = _of(OPTIONS["openings"], "ring")
+    trim: bool = _of(SWITCH, False)
     families: tuple = _of(FAMILIES, ("u", "v"))
     parallelograms: bool = _of(SWITCH, False)
     shade: bool = _of(SWITCH, False)
@@ -115,7 +124,7 @@ USES = {  # of each kind, besides the angles and what is shown
     "isothermal": ("surface", "m", "n", "bend", "moebius", "px", "py", "pz"),
     "revolution": ("m", "n", "radii"),
     "freeform": ("m", "n"),
-    "cover": ("source", "quads", "direction"),
+    "cover": ("source", "quads", "direction", "openings", "trim"),
 }
 SHOWN = "families", "parallelograms", "shade"
 

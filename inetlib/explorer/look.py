@@ -9,24 +9,26 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from .. import plot
+from .. import plot, repair
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
 PIXELS = 1200  # of the longer side of a net in a saved picture
 
 
 class Palette(NamedTuple):
-    """Colours; black: of the inscribed parallelograms."""
+    """Colours; black: of the inscribed parallelograms, cut: of panels cut at the edge."""
 
     background: str
     face: str
     black: str
+    cut: str
     families: dict
 
 
-LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", plot.COLOURS)
+RIM = {"rim": plot.GREY}  # the edge of panels that are cut there
+LIGHT = Palette("#ffffff", "#dfe6ee", "#a9c0dd", "#bccad9", plot.COLOURS | RIM)
 BRIGHT = {"u": "#7db0ff", "v": "#ff8f5e", "d1": "#45d6ab", "d2": "#ffd04a"}
-DARK = Palette("#11161d", "#434f5d", "#6d88a8", BRIGHT)
+DARK = Palette("#11161d", "#434f5d", "#6d88a8", "#586878", BRIGHT | RIM)
 
 
 def shades(off: np.ndarray) -> np.ndarray:
@@ -56,16 +58,20 @@ class Layout(NamedTuple):
     """What is filled and drawn of a net, by vertex numbers.
 
     means: arrays (k, s) of vertices of the net; their means are further vertices, in order;
-    quads (f, 4) and triangles (t, 3) are filled; lines: {family: (k, 2)} segments."""
+    quads (f, 4), triangles (t, 3) and those of cut panels, cut (c, 3), are filled; lines:
+    {family: (k, 2)} segments, and with cut panels the rest of their sides as "rim"."""
 
     means: list
     quads: np.ndarray
     triangles: np.ndarray
+    cut: np.ndarray
     lines: dict
 
 
-def layout(Q, count, families, parallelograms=False) -> Layout:
+def layout(Q, count, families, parallelograms=False, cover=None) -> Layout:
     """The `Layout` of quads Q (f, 4) on `count` vertices, with the named families of curves.
+
+    cover: the `design.Cover` with the panels that are cut at the edge, where there are any.
 
     With `parallelograms` each quad is cut into its mid-edge parallelogram and four corners.
     Where diagonals are shown, the quads become triangles around the mean of their corners."""
@@ -91,7 +97,16 @@ def layout(Q, count, families, parallelograms=False) -> Layout:
         pieces = [np.stack(p, axis=2) for p in pairwise(spokes)]
         for name, corners in (("d1", [0, 2]), ("d2", [1, 3])):
             lines[name] = np.concatenate([p[:, corners].reshape(-1, 2) for p in pieces])
-    return Layout(means, quads, triangles, {name: lines[name] for name in families})
+    cut, rim = np.empty((0, 3), dtype=np.int64), {}
+    if cover is not None:
+        cut = repair.triangulate(cover.V, cover.polygons)
+        lines |= {name: np.concatenate([lines[name], cover.edges[name]]) for name in "uv"}
+        more = [np.stack([p, np.roll(p, -1)], axis=1) for p in cover.polygons]
+        every = np.unique(np.concatenate([edges, np.sort(np.concatenate(more), axis=1)]), axis=0)
+        pairs = np.concatenate([every, lines["u"], lines["v"]])
+        pairs, times = np.unique(pairs, axis=0, return_counts=True)
+        rim = {"rim": pairs[times == 1]}  # sides of panels on no curve
+    return Layout(means, quads, triangles, cut, {name: lines[name] for name in families} | rim)
 
 
 def points(V: np.ndarray, layout: Layout) -> np.ndarray:
@@ -100,24 +115,28 @@ def points(V: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> np.ndarray:
-    """RGB bytes of all cells, first the quads: (f + t, 3); shade: one colour a face, or None."""
-    quads, triangles = len(layout.quads), len(layout.triangles)
+    """RGB bytes of all cells, in their order: (f + t + c, 3); shade: one colour a quad, or None."""
+    counts = [len(cells) for cells in (layout.quads, layout.triangles, layout.cut)]
+    colours = palette.black if counts[0] and counts[1] else palette.face, palette.face, palette.cut
+    rgb = np.round(255 * np.array([to_rgb(colour) for colour in colours])).astype(np.uint8)
+    rgb = np.repeat(rgb, counts, axis=0)
     if shade is not None:
-        return np.concatenate([shade[:quads], np.repeat(shade, 4, axis=0)[:triangles]])
-    colour = palette.black if quads and triangles else palette.face
-    pair = np.round(255 * np.array([to_rgb(colour), to_rgb(palette.face)])).astype(np.uint8)
-    return np.repeat(pair, [quads, triangles], axis=0)
+        whole = np.concatenate([shade[: counts[0]], np.repeat(shade, 4, axis=0)[: counts[1]]])
+        rgb[: len(whole)] = whole
+    return rgb
 
 
-def picture(V, Q, choice, shade, camera, form) -> bytes:
+def picture(V, Q, choice, shade, camera, form, cover=None) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
-    choice: what is shown of it; shade: RGB bytes a face (f, 3), or None; camera: `plot.camera`."""
-    plan = layout(Q, len(V), choice.families, choice.parallelograms)
-    W, faces = points(V, plan), np.concatenate([plan.quads, plan.triangles[:, [0, 1, 2, 2]]])
+    choice: what is shown of it; shade: RGB bytes a quad (f, 3), or None; camera: `plot.camera`;
+    cover: as of `layout`."""
+    plan = layout(Q, len(V), choice.families, choice.parallelograms, cover)
+    triangles = np.concatenate([plan.triangles, plan.cut])
+    W, faces = points(V, plan), np.concatenate([plan.quads, triangles[:, [0, 1, 2, 2]]])
     fill = fills(plan, LIGHT, shade) / 255
     width, named = 0.6 * line_width(len(Q)), plan.lines.items()
-    lines = [(W[pair], plot.COLOURS[name], width) for name, pairs in named for pair in pairs]
+    lines = [(W[pair], LIGHT.families[name], width) for name, pairs in named for pair in pairs]
     file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
     with matplotlib.rc_context():
         plot.use_style()

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import examples, parallelogram
+from .. import examples, parallelogram, repair
 from .choices import HEIGHTS, Choice
 
 FOUND = "freeform", "cover"  # by optimisation; all others are constructed
@@ -80,6 +80,11 @@ def _recipe(choice):
     if choice.kind == "cover" and choice.source != "file":
         example = f"surface = examples.{examples.SURFACES[choice.source].__name__}()"
         recipe = recipe._replace(rooms="design, examples", start=example)
+    if choice.kind == "cover":
+        more = ', openings="fill"' * (choice.openings == "fill") + ", trim=True" * choice.trim
+        take = "V, Q, _, polygons = {net}[:4]" if choice.trim else recipe.take
+        net = recipe.net.replace("{callback}", more + "{callback}")
+        recipe = recipe._replace(net=net, take=take)
     return recipe
 
 
@@ -108,7 +113,8 @@ def _isothermal(name, inverted):
 
 
 def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
-    """V (n, 3), Q (f, 4) of a choice, and a sentence on the net; ValueError where there is none.
+    """V (n, 3), Q (f, 4) of a choice, a sentence on the net, and None or its `design.Cover`, if
+    that has panels cut at the edge; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
     (step None) and every step, and may return False to end it."""
@@ -125,12 +131,23 @@ def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
     if choice.kind == "freeform":
         V, Q = names["V"], names["Q"]
         if callback(None, V, Q) is False:
-            return V, Q, "stopped before the first step"
+            return V, Q, "stopped before the first step", None
         names["callback"] = lambda step, V: callback(step, V, Q)
     net = names["net"] = eval(recipe.net.format_map(words), names)
     exec(recipe.take.format_map(words), names)
-    more = (*net.report.notes, *net.report.repairs) if choice.kind == "cover" else ()
-    return names["V"], names["Q"], "; ".join([recipe.message.format(net), *more])
+    covers = choice.kind == "cover"
+    more = (*net.report.notes, *net.report.repairs) if covers else ()
+    words = "; ".join([recipe.message.format(net), *more])
+    return names["V"], names["Q"], words, net if covers and net.polygons else None
+
+
+def has_one_hole(source: str, surface=None) -> bool:
+    """Whether the surface of this name has one hole, and its net can be a ring; as of `make`."""
+    try:
+        V, F, *_ = surface if source == "file" else examples.SURFACES[source]()
+        return len(repair.clean(V, F).loops) == 2
+    except (TypeError, ValueError):  # no file, or nothing that can be covered
+        return False
 
 
 def code(choice: Choice, path: object = "surface.obj") -> str:

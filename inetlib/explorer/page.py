@@ -71,6 +71,7 @@ def _controls(given):
         _select("map", "map", "kind == 'plane'")
         _select("surface", "surface", "kind == 'isothermal'")
         _select("source", "surface", "kind == 'cover'")
+        _select("openings", "hole", "kind == 'cover' && has_one_hole")
         html.H2("Angles")
         _number("theta", "\u03b8", ends=(1, 179))
         _number("theta0", "\u03b8\u2080", ends=(1, 179))
@@ -81,6 +82,8 @@ def _controls(given):
         _number("n", "n along v", "kind != 'cover'")
         _number("quads", "quads", "kind == 'cover'")
         _number("direction", "direction", "kind == 'cover'")
+        trimmed = {"label": "panels to the edge", "v_show": "kind == 'cover'"}
+        v3.VSwitch(v_model=("trim",), classes="in-trim", **trimmed, **SWITCH)
         bent = "kind == 'isothermal' && surface != 'sphere'"
         _number("bend", "bending", bent, (0, "surface == 'rolled' ? 350 : 90"))
         about = {"label": "M\u00f6bius image", "v_show": "kind == 'isothermal'"}
@@ -172,6 +175,11 @@ def _numbers():
                 html.Td(words)
                 html.Td(f"{{{{ numbers.mean_{name} }}}}\u00b0", classes=f"out-mean-{name}")
                 html.Td(f"{{{{ numbers.{name}_off }}}}\u00b0", classes=f"out-off-{name}")
+        with html.Tr(v_show="numbers.cut && numbers.cut != '0'"):
+            html.Td("panels")
+            html.Td(
+                "{{ numbers.quads }} whole, {{ numbers.cut }} cut", colspan=2, classes="out-cut"
+            )
         with html.Tr():
             html.Td("flipped faces")
             html.Td("{{ numbers.flips }}", colspan=2, classes="out-flips")

@@ -87,8 +87,10 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)
     medial = np.linalg.norm(measure.vectors(V, Q)[2:], axis=2)
+    quads, cut = (f"{x:,}".replace(",", "\u2009") for x in (about.quads, len(about.polygons)))
     return {
-        "quads": f"{about.quads:,}".replace(",", "\u2009"),
+        "quads": quads,
+        "cut": cut,
         "lam": f"{lam:.5g}",
         "mu": f"{mu:.5g}",
         "mean_theta": f"{np.degrees(about.theta.mean):.6f}",

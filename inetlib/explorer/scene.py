@@ -34,13 +34,13 @@ class Scene:
         self._known = self._layout = None
         self.origin = np.zeros(3)  # of the scene: float32 has no digits to spare far away
 
-    def show(self, V, Q, choice, dark=False, shade=None):
-        """Put a net into the scene; shade: RGB bytes a face (f, 3), or None."""
-        palette = look.DARK if dark else look.LIGHT
-        known = choice.families, choice.parallelograms, dark, shade is None, Q.tobytes()
+    def show(self, V, Q, choice, dark=False, shade=None, cover=None):
+        """Put a net into the scene; shade: RGB bytes a quad, (f, 3), or None; cover: of `look`."""
+        palette, cut = look.DARK if dark else look.LIGHT, cover and [*map(bytes, cover.polygons)]
+        known = choice.families, choice.parallelograms, dark, shade is None, Q.tobytes(), cut
         new, self._known = known != self._known, known
         if new:
-            self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms)
+            self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms, cover)
             low, high = np.min(V, axis=0), np.max(V, axis=0)
             far = np.abs(low + high).max() > FAR * np.abs(high - low).max()
             self.origin = (low + high) / 2 if far else np.zeros(3)
@@ -50,7 +50,8 @@ class Scene:
         if new:  # cells: the old colours do not fit them
             self.faces.cell_data.clear()
             self.curves.cell_data.clear()
-            self.faces.faces = np.concatenate([_counted(plan.quads), _counted(plan.triangles)])
+            cells = plan.quads, plan.triangles, plan.cut
+            self.faces.faces = np.concatenate([*map(_counted, cells)])
             lines = plan.lines or {"none": np.zeros((1, 2), dtype=np.int64)}
             self.curves.lines = _counted(np.concatenate(list(lines.values())))
             colours = [to_rgb(palette.families.get(name, palette.face)) for name in lines]

@@ -19,13 +19,15 @@ class Session:
 
     surface, path: `io.Surface` of the file on the command line and its name; net: V, Q of a net
     that is given and not made here.  V, Q, report, message: the net that is shown, of the choice
-    `shown`; problem: why there is no net of the choice, or ""; run: the search under way."""
+    `shown`; cover: its `design.Cover` where it has cut panels, or None; problem: why there is no
+    net of the choice, or ""; run: the search under way."""
 
     def __init__(self, surface=None, path=None, net=None):
         self.surface, self.path, self.given = surface, path, net is not None
         self.choice = self.shown = choices.Choice()
-        self.V = self.Q = self.report = self.run = None
+        self.V = self.Q = self.cover = self.report = self.run = None
         self.message, self.problem, self.steps = "", "", 0
+        self._pierced = {}  # surfaces by name: whether they have one hole
         self._lock = threading.Lock()  # a search ends in its own thread
         if surface is not None:
             self.change(kind="cover", source="file")
@@ -34,7 +36,7 @@ class Session:
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0)
             words = "a net from Python; deviations are from its mean angles"
-            self._settle(None, None, lambda _: (V, Q, words))
+            self._settle(None, None, lambda _: (V, Q, words, None))
             if self.problem:
                 raise ValueError(self.problem)
 
@@ -48,6 +50,14 @@ class Session:
         """Whether the net of the choice is found by optimisation."""
         return self.choice.kind in nets.FOUND and not self.given
 
+    @property
+    def has_one_hole(self):
+        """Whether the surface of the choice may be a ring or have an opening."""
+        source = self.choice.source
+        if self.choice.kind == "cover" and source not in self._pierced:
+            self._pierced[source] = nets.has_one_hole(source, self.surface)
+        return self.choice.kind == "cover" and self._pierced[source]
+
     def construct(self):
         """Make the net of the choice, where no optimisation is needed."""
         self.stop()
@@ -59,9 +69,10 @@ class Session:
         """Show the net made, or say why there is none; then: the run that is under way after it."""
         choice, problem = run.choice if run else self.choice, ""
         try:
-            V, Q, message = make(choice, *known)
+            V, Q, message, cover = make(choice, *known)
             theta, theta0 = np.radians([choice.theta, choice.theta0])
-            about = report.report(V, Q, theta=theta, theta0=theta0)
+            polygons = cover.polygons if cover else ()
+            about = report.report(V, Q, polygons, theta=theta, theta0=theta0)
         except (ValueError, ArithmeticError, MemoryError) as error:
             problem = f"no net: {error or type(error).__name__}"
         with self._lock:
@@ -69,7 +80,7 @@ class Session:
                 return False
             self.run, self.problem = then, problem
             if not problem:
-                self.V, self.Q, self.message = V, Q, message
+                self.V, self.Q, self.message, self.cover = V, Q, message, cover
                 self.shown, self.report = choice, about
             return True
 
@@ -99,7 +110,7 @@ class Session:
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}"))
+        return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}", None))
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""
@@ -128,8 +139,10 @@ class Session:
         if suffix in (".svg", ".png"):
             fill = self.colours() if self.choice.shade else None
             camera = plot.camera(azimuth, elevation)
-            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:])
+            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:], self.cover)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
-            io.write(path, self.V, self.Q, "all" if suffix in io.WITH_CURVES else None)
+            polygons, edges = (self.cover.polygons, self.cover.edges) if self.cover else ((), None)
+            curves = mesh.polylines(self.Q, edges) if suffix in io.WITH_CURVES else None
+            io.write(path, self.V, self.Q, curves, polygons)
             return path.read_bytes()
