@@ -1,0 +1,175 @@
+"""Regular grids inside a mesh: found, refined by splines, and their smallest steps by waves.
+
+A face's place is a pair of whole numbers (i, j), u running along i and v along j."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import fft
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import breadth_first_order
+from scipy.sparse.linalg import LinearOperator, cg
+
+from .sparse import BLAS
+
+ACROSS = np.array([[-1, 0], [0, -1], [1, 0], [0, 1]])  # from a face to its neighbours, in places
+LOOSE = 4  # places in the box around a piece for each face, at most
+LONGEST = 10  # times the eigenvalue of a wave twice as long as the piece: none counts for less
+SAMPLES = 5000  # faces, about, for the mean couplings
+MOST = 300  # iterations; more is a sign of a net without any order
+# neighbours of a face, and the corners it shares with them, its own one first
+SHARED = {
+    (1, 0): [(2, 1), (3, 0)],
+    (0, 1): [(0, 1), (3, 2)],
+    (1, 1): [(3, 1)],
+    (1, -1): [(2, 0)],
+}
+
+
+def places(Q: np.ndarray, neighbours: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """(Q (f, 4), places (f, 2) of its faces, from 0 on), all faces turned like the first one.
+
+    neighbours: `mesh.face_neighbours(Q)`.  Around a ring, and around holes that do not fit, the
+    places break off somewhere.  None for the places where two faces would have the same, where
+    the mesh is in several parts, and where most places would be empty."""
+    count = len(Q)
+    face, edge = np.nonzero(neighbours >= 0)
+    other = neighbours[face, edge]
+    graph = csr_array((np.ones(len(face), dtype=np.int8), (face, other)), shape=(count, count))
+    order, before = breadth_first_order(graph, 0)
+    if len(order) < count:
+        return Q, None
+    before[0] = 0
+    slot = np.argmax(neighbours[before] == np.arange(count)[:, None], axis=1)
+    alike = Q[np.arange(count), (slot + 2) % 4] == Q[before, (slot + 1) % 4]
+    sign, place = np.where(alike, 1, -1), ACROSS[slot]
+    sign[0], place[0] = 1, 0
+    while before.any():  # twice as far back each time
+        place = place[before] + sign[before, None] * place
+        sign, before = sign[before] * sign, before[before]
+    place -= place.min(axis=0)
+    box = place.max(axis=0) + 1
+    turned = np.where(sign[:, None] < 0, np.roll(Q, 2, axis=1), Q)
+    alone = box.prod() <= LOOSE * count and len(np.unique(place @ [box[1], 1])) == count
+    return turned, place if alone else None
+
+
+def vertices(Q: np.ndarray, place: np.ndarray) -> np.ndarray | None:
+    """The vertices (m+1, n+1) of a mesh that is a whole grid of m x n quads, or None."""
+    m, n = place.max(axis=0) + 1
+    if m * n != len(Q):
+        return None
+    (i, j), grid = place.T, np.empty((m + 1, n + 1), dtype=np.int64)
+    at = (i, j + 1), (i, j), (i + 1, j), (i + 1, j + 1)
+    for where, corner in zip(at, Q.T, strict=True):
+        grid[where] = corner
+    fits = all((grid[where] == corner).all() for where, corner in zip(at, Q.T, strict=True))
+    return grid if fits and len(np.unique(grid)) == grid.size else None
+
+
+def solve(
+    place: np.ndarray, J: csr_array, b: np.ndarray, tolerance: float, more: float
+) -> np.ndarray | None:
+    """y (2 f, k) with (J J^T + more) y = b (2 f, k), by conjugate gradients; None if they fail.
+
+    J: two rows for each face at its place, the entries of its four corners one after another;
+    tolerance: relative residual.  Each face is scaled by the Cholesky factor of its 2 x 2
+    block, so that what remains is nearly the same at every face: see `waves`."""
+    count, width = len(place), J.data.size // len(b)
+    i00, i10, i11 = _scale(J.data.reshape(count, 2, width), more)
+    one, two = np.moveaxis(J.data.reshape(count, 2, width), 1, 0)
+    rows = np.stack([i00[:, None] * one, i10[:, None] * one + i11[:, None] * two])
+    index = np.moveaxis(J.indices.reshape(count, 2, width), 1, 0).ravel()
+    J = csr_array((rows.ravel(), index, np.arange(0, index.size + 1, width)), shape=J.shape)
+    back, nearly = J.T, waves(place, rows.reshape(2, count, 4, -1))
+    matrix = LinearOperator((len(b),) * 2, lambda y: J @ (back @ y), dtype=float)
+    nearly = LinearOperator((len(b),) * 2, nearly, dtype=float)
+    columns = []
+    with BLAS.limit(limits=1, user_api="blas"):  # more threads only wait here
+        for column in b.T if np.isfinite(b).all() else ():
+            one, two = column.reshape(-1, 2).T
+            scaled = np.concatenate([i00 * one, i10 * one + i11 * two])
+            y, left = cg(matrix, scaled, rtol=tolerance, maxiter=MOST, M=nearly)
+            one, two = y.reshape(2, -1)
+            columns += [] if left else [np.stack([i00 * one + i10 * two, i11 * two], 1).ravel()]
+    return np.stack(columns, axis=1) if len(columns) == b.shape[1] else None
+
+
+def waves(place: np.ndarray, rows: np.ndarray) -> Callable:
+    """A function z(r), symmetric positive definite, nearly the inverse of J J^T, r (2 f,).
+
+    rows (2, f, 4, k): those of J, corner by corner, scaled so that the block of every face is
+    the unit matrix.  With the mean couplings of neighbours the rest is inverted by fast Fourier
+    transforms in a box, with zeros at the places without a face.  In single precision."""
+    box = [fft.next_fast_len(int(k), real=True) for k in place.max(axis=0) + 1]
+    w00, w01, w11 = _inverse_waves(place, rows, box)
+    w10, at = w01.conj(), place @ [box[1], 1]
+
+    def apply(r):
+        z = np.zeros((2, box[0] * box[1]), dtype=np.float32)
+        z[:, at] = r.reshape(2, -1)
+        one, two = fft.rfft2(z.reshape(2, *box), overwrite_x=True)
+        z = np.stack([w00 * one + w01 * two, w10 * one + w11 * two])
+        z = fft.irfft2(z, s=box, overwrite_x=True).reshape(2, -1)
+        return z[:, at].astype(float).ravel()
+
+    return apply
+
+
+def _scale(rows, more):
+    """Entries 00, 10, 11 of the inverse Cholesky factors of the faces' blocks, (3, f)."""
+    pairs = (0, 0), (0, 1), (1, 1)
+    d00, d01, d11 = (np.einsum("fk,fk->f", rows[:, a], rows[:, b]) for a, b in pairs)
+    d00, d11 = d00 + more, d11 + more
+    i00, i11 = 1 / np.sqrt(d00), 1 / np.sqrt(d11 - d01**2 / d00)
+    return np.stack([i00, -i11 * d01 / d00, i11])
+
+
+def _inverse_waves(place, rows, box):
+    """Entries 00, 01, 11 of the inverses of the 2 x 2 blocks of the waves in the box."""
+    a, b = (
+        2 * np.pi * np.arange(k) / n for k, n in zip((box[0], box[1] // 2 + 1), box, strict=True)
+    )
+    table = np.full((box[0] + 2, box[1] + 2), -1)  # empty places around: no face has them
+    table[tuple((place + 1).T)] = np.arange(len(place))
+    s00, s01, s11 = 1.0, 0.0, 1.0
+    for step, corners in SHARED.items():
+        other = table[tuple((place + 1 + step).T)]
+        face = np.flatnonzero(other >= 0)
+        face = face[:: 1 + len(face) // SAMPLES]
+        C = np.zeros((2, 2))
+        for one, two in corners:
+            C += np.einsum("qfk,pfk->qp", rows[:, face, one], rows[:, other[face], two])
+        C /= max(len(face), 1)
+        turn = np.exp(1j * (step[0] * a[:, None] + step[1] * b))
+        s00 = s00 + 2 * C[0, 0] * turn.real
+        s11 = s11 + 2 * C[1, 1] * turn.real
+        s01 = s01 + C[0, 1] * turn + C[1, 0] * turn.conj()
+    lowest = (s00 + s11) / 2 - np.sqrt((s00 - s11) ** 2 / 4 + abs(s01) ** 2)
+    lift = np.maximum(0, LONGEST * (np.pi / max(box)) ** 2 - lowest)
+    s00, s11 = s00 + lift, s11 + lift
+    area = s00 * s11 - abs(s01) ** 2
+    return np.float32(s11 / area), np.complex64(-s01 / area), np.float32(s00 / area)
+
+
+def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
+    """The sizes [(m0, n0), ..., (m, n)] of the grids from coarse to fine, each about doubled."""
+    if not coarse >= 4:
+        raise ValueError(f"coarse = {coarse}: at least 4 quads are wanted")
+    sizes = [(m, n)]
+    while min(m, n) > 1.5 * coarse or m * n > 4 * coarse**2:
+        m, n = (-(-k // 2) if k > coarse else k for k in (m, n))
+        sizes.insert(0, (m, n))
+    return sizes
+
+
+def refine(P: np.ndarray, m: int, n: int) -> np.ndarray:
+    """The grid P (3, ., .) at m x n quads, by cubic splines through its points."""
+    if P.shape[1:] == (m + 1, n + 1):
+        return P
+    from scipy.interpolate import RectBivariateSpline  # slow to import
+
+    here = [np.linspace(0, 1, k) for k in P.shape[1:]]
+    there = np.linspace(0, 1, m + 1), np.linspace(0, 1, n + 1)
+    kx, ky = (min(3, len(x) - 1) for x in here)
+    return np.stack([RectBivariateSpline(*here, x, kx=kx, ky=ky)(*there) for x in P])
