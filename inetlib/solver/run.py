@@ -1,7 +1,7 @@
 """The steps of an optimisation, the runs they make, and the judge of every net on the way."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -38,7 +38,7 @@ WORSE = 3  # angle steps in a row without progress end a run
 class Step(NamedTuple):
     """One iteration and the net after it."""
 
-    kind: str  # "start", "shape", "angle" or "guided"
+    kind: str  # "start", "shape", "angle", "guided" or "refined", a net of a coarser grid
     goal: Goal  # of this step
     residual: float  # sum of the squared residuals of the formulation's equations
     theta_max: float  # deviations of the angles from those of the final goal, radians
@@ -284,14 +284,20 @@ class Log:
                 step = judge((kind, goal), *net, given.goal, s, size, residual)
             except ValueError:
                 return None
-        self.history.append(step)
         if self.best is None or step.key < self.best[0].key:
             self.best = step, V, s
-        self.bar.set_description_str(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
-        self.bar.update()
-        if kind != "start" and self.callback is not None:
-            self.stopped = self.callback(step, V) is False
+        self.tell(step, lambda: V)
         return step
+
+    def tell(self, step: Step, net: Callable) -> bool:
+        """Note a step that led to net(), tell the caller, and return whether to go on."""
+        self.history.append(step)
+        words = f"{step.kind} step, {np.degrees(step.deviation):.2g} degrees off"
+        self.bar.set_description_str(words)
+        self.bar.update()
+        if step.kind != "start" and self.callback is not None and not self.stopped:
+            self.stopped = self.callback(step, net()) is False
+        return not self.stopped
 
     @property
     def done(self) -> bool:
@@ -322,16 +328,21 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
 
 
 def ratio(
-    log: Log, goals: list[Goal], shape_steps: int, limit: float, coupled: tuple | None
+    log: Log,
+    goals: list[Goal],
+    shape_steps: int,
+    limit: float,
+    coupled: tuple | None,
+    V: np.ndarray | None = None,
 ) -> None:
     """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
 
-    goals: of the first steps, see `way`; limit: the most steps; coupled: None, or one of `NEAR`.
-    """
+    goals: of the first steps, see `way`; limit: the most steps; coupled: None, or one of `NEAR`;
+    V: where it starts, the given net if None."""
     given, final = log.given, log.given.goal
     plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
     plan += [("shape", final)] * (shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
-    V, before, s = given.V, None, None
+    V, before, s = given.V if V is None else V, None, None
     lowest, worse = np.inf, 0
     for kind, goal in plan:
         if len(log.history) > limit:
