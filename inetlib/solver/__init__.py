@@ -126,7 +126,7 @@ def optimize(
     still, quadratic = (fixed, mobility, polygons), residual == "quadratic"
     given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
-    asked = dict(theta=theta, theta0=theta0, lam=lam, mu=mu, equal=equal, reference=reference)
+    asked: dict = dict(theta=theta, theta0=theta0, lam=lam, mu=mu, equal=equal, reference=reference)
     asked |= dict(on_surface=on_surface, residual=residual, via=via, stride=stride)
     simple = ours and not (coupled or len(polygons)) and iterations is None and shape_steps
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
@@ -156,7 +156,7 @@ def _refined(log, asked):
 
     Such a net is fairer than what steps of the whole size find, and sooner there."""
     given = log.given
-    grid = None if given.place is None else lattice.vertices(given.Q, given.place)
+    grid = None if given.piece is None else lattice.vertices(given.Q, given.piece.place)
     if grid is None or not _sides_alike(given.mobility[grid] == 0):
         return None
     size, P = [k - 1 for k in grid.shape], np.moveaxis(given.V[grid], 2, 0)

@@ -3,6 +3,7 @@
 A face's place is a pair of whole numbers (i, j), u running along i and v along j."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from scipy import fft
@@ -26,12 +27,18 @@ SHARED = {
 }
 
 
-def places(Q: np.ndarray, neighbours: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
-    """(Q (f, 4), places (f, 2) of its faces, from 0 on), all faces turned like the first one.
+class Piece(NamedTuple):
+    """Where the faces of a mesh are in a grid."""
 
-    neighbours: `mesh.face_neighbours(Q)`.  Around a ring, and around holes that do not fit, the
-    places break off somewhere.  None for the places where two faces would have the same, where
-    the mesh is in several parts, and where most places would be empty."""
+    place: np.ndarray  # (f, 2), from 0 on
+    period: np.ndarray  # (2,), the step around a ring, whose places break off somewhere; else 0
+
+
+def find(Q: np.ndarray, neighbours: np.ndarray) -> tuple[np.ndarray, Piece | None]:
+    """(Q (f, 4) with all faces turned like the first one, their `Piece` of a grid).
+
+    neighbours: `mesh.face_neighbours(Q)`.  None for the piece where two faces would have the
+    same place, where the mesh is in several parts, and where most places would be empty."""
     count = len(Q)
     face, edge = np.nonzero(neighbours >= 0)
     other = neighbours[face, edge]
@@ -48,10 +55,33 @@ def places(Q: np.ndarray, neighbours: np.ndarray) -> tuple[np.ndarray, np.ndarra
         place = place[before] + sign[before, None] * place
         sign, before = sign[before] * sign, before[before]
     place -= place.min(axis=0)
-    box = place.max(axis=0) + 1
+    jumps = place[other] - place[face] - sign[face, None] * ACROSS[edge]
+    period = jumps[np.argmax(jumps.any(axis=1))]
+    once = [(jumps == k * period).all(axis=1) for k in (0, 1, -1)]
+    piece = Piece(place, period * int(np.any(once, axis=0).all()))
+    at, box = _boxed(piece)[:2]
+    alone = np.prod(box) <= LOOSE * count and len(np.unique(at @ [box[1], 1])) == count
     turned = np.where(sign[:, None] < 0, np.roll(Q, 2, axis=1), Q)
-    alone = box.prod() <= LOOSE * count and len(np.unique(place @ [box[1], 1])) == count
-    return turned, place if alone else None
+    return turned, piece if alone else None
+
+
+def _boxed(piece):
+    """(places (f, 2) in a box, its size, the axis along a ring, shift): axes swapped if it is 1.
+
+    A ring begins again after box[0] steps along it and, in part, of one across: `shift` is
+    what is left of that at each step, (box[0],), and at its end the step across."""
+    along = int(abs(piece.period[1]) > abs(piece.period[0]))
+    order = [1, 0] if along else [0, 1]
+    at, (k, across) = piece.place[:, order], piece.period[order]
+    if not k:
+        return at, [fft.next_fast_len(int(n), real=True) for n in at.max(axis=0) + 1], 0, None
+    k, across = int(abs(k)), int(np.sign(k) * across)
+    at = at - (at[:, :1] // k) * [k, across]
+    steps = np.arange(k + 1) * across
+    at[:, 1] -= (steps // k)[at[:, 0]]
+    at[:, 1] -= at[:, 1].min()
+    shift = np.append((steps % k)[:-1] / k, across)
+    return at, [k, fft.next_fast_len(int(at[:, 1].max()) + 1, real=True)], along, shift
 
 
 def vertices(Q: np.ndarray, place: np.ndarray) -> np.ndarray | None:
@@ -68,20 +98,20 @@ def vertices(Q: np.ndarray, place: np.ndarray) -> np.ndarray | None:
 
 
 def solve(
-    place: np.ndarray, J: csr_array, b: np.ndarray, tolerance: float, more: float
+    piece: Piece, J: csr_array, b: np.ndarray, tolerance: float, more: float
 ) -> np.ndarray | None:
     """y (2 f, k) with (J J^T + more) y = b (2 f, k), by conjugate gradients; None if they fail.
 
     J: two rows for each face at its place, the entries of its four corners one after another;
     tolerance: relative residual.  Each face is scaled by the Cholesky factor of its 2 x 2
     block, so that what remains is nearly the same at every face: see `waves`."""
-    count, width = len(place), J.data.size // len(b)
+    count, width = len(piece.place), J.data.size // len(b)
     i00, i10, i11 = _scale(J.data.reshape(count, 2, width), more)
     one, two = np.moveaxis(J.data.reshape(count, 2, width), 1, 0)
     rows = np.stack([i00[:, None] * one, i10[:, None] * one + i11[:, None] * two])
     index = np.moveaxis(J.indices.reshape(count, 2, width), 1, 0).ravel()
     J = csr_array((rows.ravel(), index, np.arange(0, index.size + 1, width)), shape=J.shape)
-    back, nearly = J.T, waves(place, rows.reshape(2, count, 4, -1))
+    back, nearly = J.T, waves(piece, rows.reshape(2, count, 4, -1))
     matrix = LinearOperator((len(b),) * 2, lambda y: J @ (back @ y), dtype=float)
     nearly = LinearOperator((len(b),) * 2, nearly, dtype=float)
     columns = []
@@ -95,23 +125,31 @@ def solve(
     return np.stack(columns, axis=1) if len(columns) == b.shape[1] else None
 
 
-def waves(place: np.ndarray, rows: np.ndarray) -> Callable:
+def waves(piece: Piece, rows: np.ndarray) -> Callable:
     """A function z(r), symmetric positive definite, nearly the inverse of J J^T, r (2 f,).
 
     rows (2, f, 4, k): those of J, corner by corner, scaled so that the block of every face is
     the unit matrix.  With the mean couplings of neighbours the rest is inverted by fast Fourier
     transforms in a box, with zeros at the places without a face.  In single precision."""
-    box = [fft.next_fast_len(int(k), real=True) for k in place.max(axis=0) + 1]
-    w00, w01, w11 = _inverse_waves(place, rows, box)
-    w10, at = w01.conj(), place @ [box[1], 1]
+    at, box, along, shift = _boxed(piece)
+    at = at @ [box[1], 1]
+    a, b = (
+        2 * np.pi * np.arange(n) / k for n, k in zip((box[0], box[1] // 2 + 1), box, strict=True)
+    )
+    a, phase = a[:, None], np.ones(1, dtype=np.float32)
+    if shift is not None:  # a wave across is out of step after a turn
+        a = a - b * shift[-1] / box[0]
+        phase = np.complex64(np.exp(1j * shift[:-1, None] * b))
+    w00, w01, w11 = _inverse_waves(piece.place, rows, (b, a) if along else (a, b), max(box))
+    w10, back = w01.conj(), phase.conj()
 
     def apply(r):
         z = np.zeros((2, box[0] * box[1]), dtype=np.float32)
         z[:, at] = r.reshape(2, -1)
-        one, two = fft.rfft2(z.reshape(2, *box), overwrite_x=True)
+        one, two = fft.fft(phase * fft.rfft(z.reshape(2, *box)), axis=1, overwrite_x=True)
         z = np.stack([w00 * one + w01 * two, w10 * one + w11 * two])
-        z = fft.irfft2(z, s=box, overwrite_x=True).reshape(2, -1)
-        return z[:, at].astype(float).ravel()
+        z = back * fft.ifft(z, axis=1, overwrite_x=True)
+        return fft.irfft(z, n=box[1], overwrite_x=True).reshape(2, -1)[:, at].astype(float).ravel()
 
     return apply
 
@@ -125,12 +163,9 @@ def _scale(rows, more):
     return np.stack([i00, -i11 * d01 / d00, i11])
 
 
-def _inverse_waves(place, rows, box):
-    """Entries 00, 01, 11 of the inverses of the 2 x 2 blocks of the waves in the box."""
-    a, b = (
-        2 * np.pi * np.arange(k) / n for k, n in zip((box[0], box[1] // 2 + 1), box, strict=True)
-    )
-    table = np.full((box[0] + 2, box[1] + 2), -1)  # empty places around: no face has them
+def _inverse_waves(place, rows, frequencies, longest):
+    """Entries 00, 01, 11 of the inverses of the 2 x 2 blocks of waves of these frequencies."""
+    table = np.full(place.max(axis=0) + 3, -1)  # empty places around: no face has them
     table[tuple((place + 1).T)] = np.arange(len(place))
     s00, s01, s11 = 1.0, 0.0, 1.0
     for step, corners in SHARED.items():
@@ -141,12 +176,12 @@ def _inverse_waves(place, rows, box):
         for one, two in corners:
             C += np.einsum("qfk,pfk->qp", rows[:, face, one], rows[:, other[face], two])
         C /= max(len(face), 1)
-        turn = np.exp(1j * (step[0] * a[:, None] + step[1] * b))
+        turn = np.exp(1j * (step[0] * frequencies[0] + step[1] * frequencies[1]))
         s00 = s00 + 2 * C[0, 0] * turn.real
         s11 = s11 + 2 * C[1, 1] * turn.real
         s01 = s01 + C[0, 1] * turn + C[1, 0] * turn.conj()
     lowest = (s00 + s11) / 2 - np.sqrt((s00 - s11) ** 2 / 4 + abs(s01) ** 2)
-    lift = np.maximum(0, LONGEST * (np.pi / max(box)) ** 2 - lowest)
+    lift = np.maximum(0, LONGEST * (np.pi / longest) ** 2 - lowest)
     s00, s11 = s00 + lift, s11 + lift
     area = s00 * s11 - abs(s01) ** 2
     return np.float32(s11 / area), np.complex64(-s01 / area), np.float32(s00 / area)

@@ -49,7 +49,7 @@ class Problem(NamedTuple):
     shape_factor: sparse.Factor  # of the linear systems, one for each kind of step
     angle_factor: sparse.Factor
     quadratic: bool
-    place: np.ndarray | None  # of the faces in a large mesh, if it is a piece of a grid
+    piece: lattice.Piece | None  # of a grid, if a large mesh is one
     seconds: dict  # {stage: seconds} spent so far
 
 
@@ -92,12 +92,12 @@ def prepare(
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
     fair = cache(lambda: _fairness(mesh.triples(Q), weights.fairness, len(V)))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
-    neighbours, place = mesh.face_neighbours(Q), None
+    neighbours, piece = mesh.face_neighbours(Q), None
     if len(Q) > LARGE:
-        turned, place = lattice.places(Q, neighbours)
+        turned, piece = lattice.find(Q, neighbours)
         if (turned != Q).any():
             Q, neighbours = turned, mesh.face_neighbours(turned)
-    return Problem(V, Q, *kept, neighbours, *lengths, *factors, quadratic, place, {})
+    return Problem(V, Q, *kept, neighbours, *lengths, *factors, quadratic, piece, {})
 
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:

@@ -205,11 +205,11 @@ def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
 def _smallest(problem, J, right, f):
     """y (2 f, k) with J J^T y = right: by waves in a large piece of a grid, else by factors."""
     more = REGULAR * (J.data @ J.data) / len(f)
-    if problem.place is not None and len(problem.Q) > MANY:
+    if problem.piece is not None and len(problem.Q) > MANY:
         with timed(problem.seconds, "solve"):
             off = max(np.abs(f).max() ** 1.5, EXACT)
             part = min(off / np.abs(right[:, 0]).max(initial=off), WAVES)
-            y = lattice.solve(problem.place, J, right, part, more)
+            y = lattice.solve(problem.piece, J, right, part, more)
         if y is not None:
             return y
     with timed(problem.seconds, "assemble"):
