@@ -145,11 +145,15 @@ def waves(piece: Piece, rows: np.ndarray) -> Callable:
 
     def apply(r):
         z = np.zeros((2, box[0] * box[1]), dtype=np.float32)
-        z[:, at] = r.reshape(2, -1)
+        for plane, values in zip(z, r.reshape(2, -1), strict=True):
+            plane[at] = values
         one, two = fft.fft(phase * fft.rfft(z.reshape(2, *box)), axis=1, overwrite_x=True)
-        z = np.stack([w00 * one + w01 * two, w10 * one + w11 * two])
+        z = np.empty((2, *one.shape), dtype=one.dtype)
+        np.add(w00 * one, w01 * two, out=z[0])
+        np.add(w10 * one, w11 * two, out=z[1])
         z = back * fft.ifft(z, axis=1, overwrite_x=True)
-        return fft.irfft(z, n=box[1], overwrite_x=True).reshape(2, -1)[:, at].astype(float).ravel()
+        z = fft.irfft(z, n=box[1], overwrite_x=True).reshape(2, -1)
+        return z.take(at, axis=1, mode="clip").astype(float).ravel()
 
     return apply
 
