@@ -129,33 +129,57 @@ def waves(piece: Piece, rows: np.ndarray) -> Callable:
     """A function z(r), symmetric positive definite, nearly the inverse of J J^T, r (2 f,).
 
     rows (2, f, 4, k): those of J, corner by corner, scaled so that the block of every face is
-    the unit matrix.  With the mean couplings of neighbours the rest is inverted by fast Fourier
-    transforms in a box, with zeros at the places without a face.  In single precision."""
+    the unit matrix.  With the mean couplings of neighbours the rest is inverted by fast sine
+    transforms in a whole grid, else by Fourier transforms in a box, with zeros at the places
+    without a face.  In single precision."""
     at, box, along, shift = _boxed(piece)
-    at = at @ [box[1], 1]
-    a, b = (
-        2 * np.pi * np.arange(n) / k for n, k in zip((box[0], box[1] // 2 + 1), box, strict=True)
-    )
-    a, phase = a[:, None], np.ones(1, dtype=np.float32)
-    if shift is not None:  # a wave across is out of step after a turn
-        a = a - b * shift[-1] / box[0]
-        phase = np.complex64(np.exp(1j * shift[:-1, None] * b))
-    w00, w01, w11 = _inverse_waves(piece.place, rows, (b, a) if along else (a, b), max(box))
-    w10, back = w01.conj(), phase.conj()
+    whole = shift is None and (piece.place.max(axis=0) + 1).prod() == len(piece.place)
+    there, back, turn, box = _sines(piece.place) if whole else _circles(box, along, shift)
+    at = (piece.place if whole else at) @ [box[1], 1]
+    w00, w01, w11 = _inverse_waves(piece.place, rows, turn, max(box))
+    w10 = w01.conj()
 
     def apply(r):
         z = np.zeros((2, box[0] * box[1]), dtype=np.float32)
         for plane, values in zip(z, r.reshape(2, -1), strict=True):
             plane[at] = values
-        one, two = fft.fft(phase * fft.rfft(z.reshape(2, *box)), axis=1, overwrite_x=True)
+        one, two = there(z.reshape(2, *box))
         z = np.empty((2, *one.shape), dtype=one.dtype)
         np.add(w00 * one, w01 * two, out=z[0])
         np.add(w10 * one, w11 * two, out=z[1])
-        z = back * fft.ifft(z, axis=1, overwrite_x=True)
-        z = fft.irfft(z, n=box[1], overwrite_x=True).reshape(2, -1)
-        return z.take(at, axis=1, mode="clip").astype(float).ravel()
+        return back(z).reshape(2, -1).take(at, axis=1, mode="clip").astype(float).ravel()
 
     return apply
+
+
+def _sines(place):
+    """(transform, its inverse, step -> what it makes of a wave, box) in a whole grid."""
+    box = [int(k) for k in place.max(axis=0) + 1]
+    a, b = (np.pi * np.arange(1, k + 1) / (k + 1) for k in box)
+
+    def there(z):
+        return fft.dstn(z, type=1, norm="ortho", axes=(1, 2), overwrite_x=True)
+
+    return there, there, lambda step: np.cos(step[0] * a)[:, None] * np.cos(step[1] * b), box
+
+
+def _circles(box, along, shift):
+    """The same in a box that begins again where it ends: see `_boxed`."""
+    a = 2 * np.pi * np.arange(box[0])[:, None] / box[0]
+    b = 2 * np.pi * np.arange(box[1] // 2 + 1) / box[1]
+    phase = np.ones(1, dtype=np.float32)
+    if shift is not None:  # a wave across is out of step after a turn
+        a = a - b * shift[-1] / box[0]
+        phase = np.complex64(np.exp(1j * shift[:-1, None] * b))
+
+    def there(z):
+        return fft.fft(phase * fft.rfft(z), axis=1, overwrite_x=True)
+
+    def back(z):
+        z = phase.conj() * fft.ifft(z, axis=1, overwrite_x=True)
+        return fft.irfft(z, n=box[1], overwrite_x=True)
+
+    return there, back, lambda step: np.exp(1j * (step[along] * a + step[1 - along] * b)), box
 
 
 def _scale(rows, more):
@@ -167,8 +191,8 @@ def _scale(rows, more):
     return np.stack([i00, -i11 * d01 / d00, i11])
 
 
-def _inverse_waves(place, rows, frequencies, longest):
-    """Entries 00, 01, 11 of the inverses of the 2 x 2 blocks of waves of these frequencies."""
+def _inverse_waves(place, rows, turn, longest):
+    """Entries 00, 01, 11 of the inverses of the 2 x 2 blocks of all waves."""
     table = np.full(place.max(axis=0) + 3, -1)  # empty places around: no face has them
     table[tuple((place + 1).T)] = np.arange(len(place))
     s00, s01, s11 = 1.0, 0.0, 1.0
@@ -180,15 +204,16 @@ def _inverse_waves(place, rows, frequencies, longest):
         for one, two in corners:
             C += np.einsum("qfk,pfk->qp", rows[:, face, one], rows[:, other[face], two])
         C /= max(len(face), 1)
-        turn = np.exp(1j * (step[0] * frequencies[0] + step[1] * frequencies[1]))
-        s00 = s00 + 2 * C[0, 0] * turn.real
-        s11 = s11 + 2 * C[1, 1] * turn.real
-        s01 = s01 + C[0, 1] * turn + C[1, 0] * turn.conj()
+        there = turn(step)
+        s00 = s00 + 2 * C[0, 0] * there.real
+        s11 = s11 + 2 * C[1, 1] * there.real
+        s01 = s01 + C[0, 1] * there + C[1, 0] * there.conj()
     lowest = (s00 + s11) / 2 - np.sqrt((s00 - s11) ** 2 / 4 + abs(s01) ** 2)
     lift = np.maximum(0, LONGEST * (np.pi / longest) ** 2 - lowest)
     s00, s11 = s00 + lift, s11 + lift
     area = s00 * s11 - abs(s01) ** 2
-    return np.float32(s11 / area), np.complex64(-s01 / area), np.float32(s00 / area)
+    mixed = np.complex64 if np.iscomplexobj(s01) else np.float32
+    return np.float32(s11 / area), mixed(-s01 / area), np.float32(s00 / area)
 
 
 def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
