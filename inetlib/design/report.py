@@ -6,7 +6,7 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from .. import measure, mesh, reference
+from .. import measure, mesh
 from ..reference import Reference
 from .flatten import Flat
 
@@ -93,9 +93,10 @@ def survey(
 ) -> Report:
     """The `Report` of the net V, Q over the `Reference` goal, flattened to the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
-    net, over = report(V, Q, theta=theta, theta0=theta0), reference.mesh(V, Q)
-    back = np.linalg.norm(over.closest(goal.V)[0] - goal.V, axis=1)
-    rim = np.linalg.norm(over.boundary(goal.V)[0] - goal.V, axis=1)
+    net = report(V, Q, theta=theta, theta0=theta0)
+    outline = np.stack(mesh.half_edges(Q), axis=1)[mesh.opposites(Q) < 0]
+    faces = mesh.triangles(V, Q), (V, outline)
+    back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, *over)[0]) for over in faces)
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
     covered = area_of(V, Q) / area_of(goal.V, goal.F)
     notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))

@@ -131,7 +131,7 @@ def optimize(
     simple = ours and not (coupled or len(polygons)) and iterations is None and shape_steps
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
         start = _refined(log, asked | {"shape_steps": shape_steps}) if simple else None
-        if start is not None:
+        if start is not None and not log.stopped:
             run.ratio(log, [wanted], 0, limit, None, start)
         factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
         ended = log.stopped or (start is not None and log.done)

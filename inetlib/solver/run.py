@@ -19,7 +19,7 @@ Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
 MANY = 4000  # faces: from here on waves beat factors where the mesh is a piece of a grid
-WAVES = 1e-3  # relative residual of a smallest step by waves, at most
+WAVES = 3e-3  # relative residual of a smallest step by waves, at most
 EXACT = 3e-12  # radians, about: smaller errors of the angles are not aimed at by waves
 COUPLING = 100  # weight of shifting every other vertex in the size of a coupled step
 LOOSE = 1e-6, 0.0  # weights of that size, and of the distances from the reference, at the end
