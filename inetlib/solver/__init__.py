@@ -2,7 +2,8 @@
 
 `goal` knows what is wanted, `problem` checks the input and holds the shape energies,
 `residuals` are the equations, `run` and `guided` make the steps of either formulation and
-judge every net by `measure`, `sparse` solves; `grids` goes from coarse to fine."""
+judge every net by `measure`, `sparse` solves, pieces of grids by `lattice`; large grids go from
+coarse to fine, those of `grids` without any matrix."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -178,7 +179,7 @@ def _refined(log, asked):
         return None
     here = {"mobility": given.mobility[some.ravel()], "tolerance": max(ENOUGH, log.tolerance)}
     here["weights"] = Weights(*(weight[some.ravel()] for weight in given.weights))
-    here["callback"] = lambda step, W: log.tell(step, lambda: refined(W))
+    here["callback"] = lambda step, W: log.tell(step, lambda: refined(W), " on a coarser grid")
     found = optimize(coarse, mesh.grid_quads(m, n), **asked, **here)
     if not (found.converged or log.stopped):
         return None

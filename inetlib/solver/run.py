@@ -289,10 +289,10 @@ class Log:
         self.tell(step, lambda: V)
         return step
 
-    def tell(self, step: Step, net: Callable) -> bool:
+    def tell(self, step: Step, net: Callable, where: str = "") -> bool:
         """Note a step that led to net(), tell the caller, and return whether to go on."""
         self.history.append(step)
-        words = f"{step.kind} step, {np.degrees(step.deviation):.2g} degrees off"
+        words = f"{step.kind} step{where}, {np.degrees(step.deviation):.2g} degrees off"
         self.bar.set_description_str(words)
         self.bar.update()
         if step.kind != "start" and self.callback is not None and not self.stopped:
