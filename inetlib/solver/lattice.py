@@ -1,7 +1,8 @@
 """Regular grids inside a mesh: found, refined by splines, and their smallest steps by waves.
 
 In a plane of places the equations of all faces look alike, so that J J^T is nearly inverted
-by fast transforms.  A face's place is a pair of whole numbers (i, j), u running along i and v along j."""
+by fast transforms.  A face's place is a pair of whole numbers (i, j), u running along i and
+v along j."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -104,8 +105,8 @@ def solve(
     """y (2 f, k) with J J^T y = b (2 f, k), by conjugate gradients; None where they fail.
 
     J: two rows for each face at its place, the entries of its four corners one after another;
-    tolerance: relative residual; more: added to the diagonal where faces are scaled.  Each face is scaled by the Cholesky factor of its 2 x 2
-    block, so that what remains is nearly the same at every face: see `waves`."""
+    tolerance: relative residual.  Each face is scaled by the Cholesky factor of its 2 x 2
+    block, `more` added to its diagonal; what remains is nearly the same everywhere: see `waves`."""
     count, width = len(piece.place), J.data.size // len(b)
     i00, i10, i11 = _scale(J.data.reshape(count, 2, width), more)
     one, two = np.moveaxis(J.data.reshape(count, 2, width), 1, 0)
