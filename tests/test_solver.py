@@ -167,7 +167,7 @@ def test_shape_energies_are_those_of_the_paper():
     grid = np.moveaxis(W.reshape(5, 5, 3), 2, 0)
     rows = np.concatenate([np.diff(grid, 2, axis=1).ravel(), np.diff(grid, 2, axis=2).ravel()])
     w = W.ravel()
-    np.testing.assert_allclose(w @ (given.fair @ w), 0.3 * rows @ rows, rtol=1e-12)
+    np.testing.assert_allclose(w @ (given.fair() @ w), 0.3 * rows @ rows, rtol=1e-12)
     outer = given.boundary
     assert len(outer) == 16
     feet, normals = surface.closest(W)
@@ -176,10 +176,10 @@ def test_shape_energies_are_those_of_the_paper():
     aside = np.cross(e1, np.cross(W[outer] - p, e1))  # the paper's second form, times e1 again
     pull[outer] += 0.7 * aside
     A, g = problem.shape(given, W)
-    np.testing.assert_allclose(g - given.fair @ w, pull.ravel(), atol=1e-12)
+    np.testing.assert_allclose(g - given.fair() @ w, pull.ravel(), atol=1e-12)
     hessian = 0.5 * normals[:, :, None] * normals[:, None, :]
     hessian[outer] += 0.7 * (np.eye(3) - e1[:, :, None] * e1[:, None, :])
-    rest = (A - given.fair).toarray().reshape(25, 3, 25, 3)
+    rest = (A - given.fair()).toarray().reshape(25, 3, 25, 3)
     np.testing.assert_allclose(rest[range(25), :, range(25)], hessian, atol=1e-12)
 
 

@@ -14,6 +14,7 @@ INSIDE = 1e-7  # of the size of the domain: points this close to it are inside, 
 TINY = 1e-9  # of a cell: a part this small of it is none
 TRIES = 30  # sizes that are tried for a wanted number of quads
 CLOSE = 0.004  # of the wanted number: close enough
+MANY = 5000  # quads: for more, a small layer tells how many cells the boundary cuts
 MOST = 20_000_000  # grid points that are tried
 
 
@@ -94,7 +95,7 @@ def cover(
 
 def _counted(domain, turn, rho, count):
     """The layer whose number of quads is nearest to the wanted one; sizes go by trial."""
-    edge, best, tried = np.sqrt(domain.area / (count * rho.imag)), None, set()
+    edge, best, tried = _edge(domain, turn, rho, count), None, set()
     for _ in range(TRIES):
         fit = _fit(domain, edge * turn, rho)
         if fit in tried:
@@ -108,6 +109,16 @@ def _counted(domain, turn, rho, count):
             break
         edge *= np.clip(np.sqrt(found / count), 0.7, 1.4)
     return best
+
+
+def _edge(domain, turn, rho, count):
+    """The length |u| to try first; cells cut by the boundary grow with the root of the number."""
+    if count > MANY:
+        fit = _fit(domain, _edge(domain, turn, rho, count // 16) * turn, rho)
+        layer, cells = _layer(domain, *fit), domain.area / (abs(fit[0]) ** 2 * rho.imag)
+        cut = (cells - len(layer.Q)) / np.sqrt(cells) if layer else 0
+        count = (cut + np.sqrt(cut**2 + 4 * count)) ** 2 / 4
+    return np.sqrt(domain.area / (count * rho.imag))
 
 
 def _fit(domain, u, rho):

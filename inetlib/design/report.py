@@ -6,7 +6,7 @@ from typing import NamedTuple
 import igl
 import numpy as np
 
-from .. import measure, mesh, panels, reference, ties
+from .. import measure, mesh, panels, ties
 from ..reference import Reference
 from .flatten import Flat
 
@@ -107,9 +107,11 @@ def survey(
     """The `Report` of the net V, Q and its cut panels over the `Reference` goal, flattened to
     the `Flat` flat."""
     there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
-    net, over = report(V, Q, polygons, theta=theta, theta0=theta0), reference.mesh(V, Q)
-    back = np.linalg.norm(over.closest(goal.V)[0] - goal.V, axis=1)
-    rim = np.linalg.norm(over.boundary(goal.V)[0] - goal.V, axis=1)
+    net, fans = report(V, Q, polygons, theta=theta, theta0=theta0), [mesh.triangles(V, Q)[1]]
+    fans += [np.stack([np.full(len(p) - 2, p[0]), p[1:-1], p[2:]], axis=1) for p in polygons]
+    T = np.concatenate(fans)
+    outline = np.stack(mesh.half_edges(T), axis=1)[mesh.opposites(T) < 0]
+    back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, V, x)[0]) for x in (T, outline))
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
     cut = sum(float(np.linalg.norm(_area_vector(V[polygon]))) for polygon in polygons)
     covered = (area_of(V, Q) + cut) / area_of(goal.V, goal.F)

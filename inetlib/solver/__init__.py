@@ -2,7 +2,8 @@
 
 `goal` knows what is wanted, `problem` checks the input and holds the shape energies,
 `residuals` are the equations, `run` and `guided` make the steps of either formulation and
-judge every net by `measure`, `sparse` solves; `grids` goes from coarse to fine."""
+judge every net by `measure`, `sparse` solves, pieces of grids by `lattice`; large grids go from
+coarse to fine, those of `grids` without any matrix."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -10,13 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
+from .. import mesh
 from ..parallelogram import check_whole
 from ..reference import Reference
-from . import guided, run
+from . import guided, lattice, run
 from .goal import aim, angles, logs
 from .problem import PAPER, Weights, prepare
 
 STRIDE = np.radians(15)
+DETAIL = 0.25  # of an edge: where a coarser grid is farther off, it has lost something
+ENOUGH = 1e-6  # radians, of the angles of a coarser grid
 
 
 class NotConverged(RuntimeError):
@@ -88,6 +92,11 @@ def optimize(
     strict       raise `NotConverged` instead of returning a net that is off
     progress     show a bar; callback(step, V) after every step may return False to stop
 
+    A whole grid of many quads is solved as a coarser one, refined, and set right by smallest
+    steps, wherever nothing forbids it: polygons, coupled, iterations, shape_steps=0, vertices
+    that stay inside, details that a coarser grid would lose.  Steps on coarser grids are in the
+    history, too, and the callback sees their nets refined.
+
     A run that ends off its angles is repeated with smaller strides, one that ends with flipped
     faces or darts with `run.coupled_step`; of all nets the one with the fewest of these, then
     the smallest deviation, is returned.  `converged`: all faces have their angles, none is
@@ -118,9 +127,18 @@ def optimize(
     still, quadratic = (fixed, mobility, polygons), residual == "quadratic"
     given = prepare(V, Q, wanted, weights, reference, on_surface, *still, quadratic)
     log = run.Log(given, tolerance, progress, callback)
+    asked: dict = dict(theta=theta, theta0=theta0, lam=lam, mu=mu, equal=equal, reference=reference)
+    asked |= dict(on_surface=on_surface, residual=residual, via=via, stride=stride)
+    simple = ours and not (coupled or len(polygons)) and iterations is None and shape_steps
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
+        start = _refined(log, asked | {"shape_steps": shape_steps}) if simple else None
+        if start is not None and not log.stopped:
+            run.ratio(log, [wanted], 0, limit, None, start)
         factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
-        for couple, factor in _runs(log, factors, coupled, ours and not on_surface):
+        ended = log.stopped or (start is not None and log.done)
+        for couple, factor in (
+            () if ended else _runs(log, factors, coupled, ours and not on_surface)
+        ):
             goals = run.way(given, via, stride * factor)
             if ours:
                 run.ratio(log, goals, shape_steps, limit, couple)
@@ -132,6 +150,47 @@ def optimize(
     if strict and not result.converged:
         raise NotConverged(result)
     return result
+
+
+def _refined(log, asked):
+    """The net V (n, 3) of a coarser grid, solved, refined and recorded; None where there is none.
+
+    Such a net is fairer than what steps of the whole size find, and sooner there."""
+    given = log.given
+    grid = None if given.piece is None else lattice.vertices(given.Q, given.piece.place)
+    if grid is None or not _sides_alike(given.mobility[grid] == 0):
+        return None
+    size, P = [k - 1 for k in grid.shape], np.moveaxis(given.V[grid], 2, 0)
+    m, n = lattice.levels(*size)[-2]
+    some = grid[
+        np.ix_(
+            *((2 * k * np.arange(j + 1) + j) // (2 * j) for k, j in zip(size, (m, n), strict=True))
+        )
+    ]
+
+    def refined(W):
+        V, still = np.empty_like(given.V), given.mobility == 0
+        V[grid] = np.moveaxis(lattice.refine(W.T.reshape(3, m + 1, n + 1), *size), 0, 2)
+        V[still] = given.V[still]
+        return V
+
+    coarse = np.moveaxis(lattice.refine(P, m, n), 0, 2).reshape(-1, 3)
+    if np.linalg.norm(refined(coarse) - given.V, axis=1).max() > DETAIL * given.edge:
+        return None
+    here = {"mobility": given.mobility[some.ravel()], "tolerance": max(ENOUGH, log.tolerance)}
+    here["weights"] = Weights(*(weight[some.ravel()] for weight in given.weights))
+    here["callback"] = lambda step, W: log.tell(step, lambda: refined(W), " on a coarser grid")
+    found = optimize(coarse, mesh.grid_quads(m, n), **asked, **here)
+    if not (found.converged or log.stopped):
+        return None
+    V = refined(found.V)
+    return V if log.record("refined", given.goal, V, None, 0.0) else None
+
+
+def _sides_alike(mask):
+    """Whether a mask (m+1, n+1) is constant inside and along each side, but for the corners."""
+    inside = mask[1:-1, 1:-1], mask[1:-1, 0], mask[1:-1, -1], mask[0, 1:-1], mask[-1, 1:-1]
+    return all(part.all() or not part.any() for part in inside)
 
 
 def _runs(log, factors, coupled, can_couple):

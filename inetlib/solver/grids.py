@@ -9,6 +9,7 @@ from .. import measure, mesh
 from . import Result, sparse
 from . import optimize as solve
 from .goal import aim, logs
+from .lattice import levels, refine
 from .run import judge, timed
 
 TOLERANCE = np.radians(1e-6)
@@ -69,17 +70,6 @@ def _checked(X):
     V, Q = mesh.check_arrays(X.reshape(-1, 3), mesh.grid_quads(X.shape[0] - 1, X.shape[1] - 1))
     measure.flipped(V, Q, np.full((len(Q), 1), -1))  # refuses collapsed faces
     return V.reshape(X.shape)
-
-
-def levels(m: int, n: int, coarse: int = 20) -> list[tuple[int, int]]:
-    """The sizes [(m0, n0), ..., (m, n)] of the grids from coarse to fine, each about doubled."""
-    if not coarse >= 4:
-        raise ValueError(f"coarse = {coarse}: at least 4 quads are wanted")
-    sizes = [(m, n)]
-    while min(m, n) > 1.5 * coarse or m * n > 4 * coarse**2:
-        m, n = (-(-k // 2) if k > coarse else k for k in (m, n))
-        sizes.insert(0, (m, n))
-    return sizes
 
 
 def _attempt(X, goal, sizes, tolerance, seconds, bar):
@@ -148,15 +138,3 @@ def _judge(size, goal, seconds):
 
 def _vertices(P):
     return np.moveaxis(P, 0, 2).reshape(-1, 3)
-
-
-def refine(P: np.ndarray, m: int, n: int) -> np.ndarray:
-    """The grid P (3, ., .) at m x n quads, by cubic splines through its points."""
-    if P.shape[1:] == (m + 1, n + 1):
-        return P
-    from scipy.interpolate import RectBivariateSpline  # slow to import
-
-    here = [np.linspace(0, 1, k) for k in P.shape[1:]]
-    there = np.linspace(0, 1, m + 1), np.linspace(0, 1, n + 1)
-    kx, ky = (min(3, len(x) - 1) for x in here)
-    return np.stack([RectBivariateSpline(*here, x, kx=kx, ky=ky)(*there) for x in P])

@@ -1,6 +1,7 @@
 """An optimisation problem: the checked input, and all that stays the same from step to step."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -8,9 +9,10 @@ from scipy.sparse import csr_array, diags_array, kron
 
 from .. import measure, mesh
 from ..reference import Reference
-from . import residuals, sparse
+from . import lattice, residuals, sparse
 from .goal import Goal
 
+LARGE = 1600  # quads: of meshes with more it is found out whether they are pieces of grids
 FAR = 0.1  # a reference farther away on average (in its diagonals) is a mistake
 
 
@@ -40,13 +42,14 @@ class Problem(NamedTuple):
     on_surface: bool
     mobility: np.ndarray  # (n,)
     boundary: np.ndarray  # the vertices on it
-    fair: csr_array  # the matrix of fairness
+    fair: Callable  # the matrix of fairness, made when it is first asked for
     neighbours: np.ndarray  # of the faces
     edge: float  # mean length
     rounding: float  # the angle by which rounding of V may turn the shortest edge
     shape_factor: sparse.Factor  # of the linear systems, one for each kind of step
     angle_factor: sparse.Factor
     quadratic: bool
+    piece: lattice.Piece | None  # of a grid, if a large mesh is one
     seconds: dict  # {stage: seconds} spent so far
 
 
@@ -87,15 +90,21 @@ def prepare(
     edges = np.linalg.norm(V[Q] - V[np.roll(Q, -1, axis=1)], axis=2)
     lengths = float(edges.mean()), 8 * np.spacing(np.abs(V).max()) / edges.min()
     factors = sparse.Factor(V), sparse.Factor(V[Q].mean(axis=1))
-    fair = _fairness(mesh.triples(Q), weights.fairness, len(V))
+    fair = cache(lambda: _fairness(mesh.triples(Q), weights.fairness, len(V)))
     kept = goal, weights, reference, on_surface, mobility, boundary, fair
-    return Problem(V, Q, *kept, mesh.face_neighbours(Q), *lengths, *factors, quadratic, {})
+    neighbours, piece = mesh.face_neighbours(Q), None
+    if len(Q) > LARGE:
+        turned, piece = lattice.find(Q, neighbours)
+        if (turned != Q).any():
+            Q, neighbours = turned, mesh.face_neighbours(turned)
+    return Problem(V, Q, *kept, neighbours, *lengths, *factors, quadratic, piece, {})
 
 
 def shape(problem: Problem, V: np.ndarray) -> tuple[csr_array, np.ndarray]:
     """Matrix (3 n, 3 n) and half gradient (3 n,) of the energies of fairness, approximation
     and boundary gliding at the net V; the last two only with a reference."""
-    A, g = problem.fair, problem.fair @ V.ravel()
+    A = problem.fair()
+    g = A @ V.ravel()
     if problem.reference is None:
         return A, g
     weights, at = problem.weights, np.arange(len(V))

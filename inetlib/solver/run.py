@@ -1,7 +1,7 @@
 """The steps of an optimisation, the runs they make, and the judge of every net on the way."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -11,13 +11,16 @@ from tqdm import tqdm
 
 from .. import measure
 from ..parallelogram import is_admissible
-from . import residuals, sparse
+from . import lattice, residuals, sparse
 from .goal import Goal, aim, angles, freedom, logs, towards
 from .problem import Problem, shape
 
 Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
+MANY = 4000  # faces: from here on waves beat factors where the mesh is a piece of a grid
+WAVES = 3e-3  # relative residual of a smallest step by waves, at most
+EXACT = 3e-12  # radians, about: smaller errors of the angles are not aimed at by waves
 COUPLING = 100  # weight of shifting every other vertex in the size of a coupled step
 LOOSE = 1e-6, 0.0  # weights of that size, and of the distances from the reference, at the end
 NEAR = (1e-5, 1.0), (1e-4, 0.1), (1e-3, 0.01)  # and before: as near as can be, else less
@@ -35,7 +38,7 @@ WORSE = 3  # angle steps in a row without progress end a run
 class Step(NamedTuple):
     """One iteration and the net after it."""
 
-    kind: str  # "start", "shape", "angle" or "guided"
+    kind: str  # "start", "shape", "angle", "guided" or "refined", a net of a coarser grid
     goal: Goal  # of this step
     residual: float  # sum of the squared residuals of the formulation's equations
     theta_max: float  # deviations of the angles from those of the final goal, radians
@@ -193,16 +196,29 @@ def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
         free, root, lift = _metric(problem, V)
         right = np.column_stack([f + J @ lift, G])
         J = free(J)
+    y = _smallest(problem, J, right, f)
+    ds = _freedom(G.T @ y[:, 1:], G.T @ y[:, 0])
+    d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
+    return d.reshape(-1, 3), ds
+
+
+def _smallest(problem, J, right, f):
+    """y (2 f, k) with J J^T y = right: by waves in a large piece of a grid, else by factors."""
+    more = REGULAR * (J.data @ J.data) / len(f)
+    if problem.piece is not None and len(problem.Q) > MANY:
+        with timed(problem.seconds, "solve"):
+            off = max(np.abs(f).max() ** 1.5, EXACT)
+            part = min(off / np.abs(right[:, 0]).max(initial=off), WAVES)
+            y = lattice.solve(problem.piece, J, right, part, more)
+        if y is not None:
+            return y
+    with timed(problem.seconds, "assemble"):
         S = J @ J.T
-        diagonal = S.diagonal()
-        S.setdiag(diagonal + REGULAR * diagonal.mean())
+        S.setdiag(S.diagonal() + more)
     with timed(problem.seconds, "factor"):
         solve = problem.angle_factor(S)
     with timed(problem.seconds, "solve"):
-        y = solve(right)
-        ds = _freedom(G.T @ y[:, 1:], G.T @ y[:, 0])
-        d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
-    return d.reshape(-1, 3), ds
+        return solve(right)
 
 
 def _freedom(A, b):
@@ -219,10 +235,26 @@ def _metric(problem, V):
         root = np.repeat(root, 3)
         return lambda J: sparse.scaled(J, root), diags_array(root), np.zeros(V.size)
     feet, normals = problem.reference.closest(V)
-    blocks = (np.eye(3) - normals[:, :, None] * normals[:, None, :]) * root[:, None, None]
-    R = bsr_array((blocks, np.arange(len(V)), np.arange(len(V) + 1)), shape=(V.size,) * 2).tocsr()
+    frames, at = _tangents(normals) * root[:, None, None], np.arange(len(V) + 1)
+    R = bsr_array((frames, at[:-1], at), shape=(V.size, 2 * len(V)))
     lift = np.where(root[:, None] > 0, feet - V, 0.0).ravel()
-    return lambda J: J @ R, R, lift
+    columns = (2 * problem.Q[..., None] + np.arange(2)).reshape(-1, 8)
+
+    def free(J):
+        local = J.data.reshape(-1, 2, 4, 3)
+        along = np.einsum("fqcx,fcxk->fqck", local, frames[problem.Q])
+        return sparse.rows(along.reshape(-1, 2, 8), columns, R.shape[1])
+
+    return free, R, lift
+
+
+def _tangents(normals):
+    """Two unit vectors across each unit normal and each other, as columns: (n, 3, 2)."""
+    x, y, z = normals.T
+    side = np.copysign(1.0, z)
+    a = -1 / (side + z)
+    one = 1 + side * x * x * a, side * x * y * a, -side * x
+    return np.stack([np.stack(one, axis=1), np.stack([x * y * a, side + y * y * a, -y], axis=1)], 2)
 
 
 class Log:
@@ -252,14 +284,20 @@ class Log:
                 step = judge((kind, goal), *net, given.goal, s, size, residual)
             except ValueError:
                 return None
-        self.history.append(step)
         if self.best is None or step.key < self.best[0].key:
             self.best = step, V, s
-        self.bar.set_description_str(f"{kind} step, {np.degrees(step.deviation):.2g} degrees off")
-        self.bar.update()
-        if kind != "start" and self.callback is not None:
-            self.stopped = self.callback(step, V) is False
+        self.tell(step, lambda: V)
         return step
+
+    def tell(self, step: Step, net: Callable, where: str = "") -> bool:
+        """Note a step that led to net(), tell the caller, and return whether to go on."""
+        self.history.append(step)
+        words = f"{step.kind} step{where}, {np.degrees(step.deviation):.2g} degrees off"
+        self.bar.set_description_str(words)
+        self.bar.update()
+        if step.kind != "start" and self.callback is not None and not self.stopped:
+            self.stopped = self.callback(step, net()) is False
+        return not self.stopped
 
     @property
     def done(self) -> bool:
@@ -290,16 +328,21 @@ def way(given: Problem, via: str, stride: float) -> list[Goal]:
 
 
 def ratio(
-    log: Log, goals: list[Goal], shape_steps: int, limit: float, coupled: tuple | None
+    log: Log,
+    goals: list[Goal],
+    shape_steps: int,
+    limit: float,
+    coupled: tuple | None,
+    V: np.ndarray | None = None,
 ) -> None:
     """One run of the reduced formulation, until done or WORSE angle steps gained nothing.
 
-    goals: of the first steps, see `way`; limit: the most steps; coupled: None, or one of `NEAR`.
-    """
+    goals: of the first steps, see `way`; limit: the most steps; coupled: None, or one of `NEAR`;
+    V: where it starts, the given net if None."""
     given, final = log.given, log.given.goal
     plan = [("shape" if shape_steps else "angle", goal) for goal in goals]
     plan += [("shape", final)] * (shape_steps - 1) + [("angle", final)] * ANGLE_STEPS
-    V, before, s = given.V, None, None
+    V, before, s = given.V if V is None else V, None, None
     lowest, worse = np.inf, 0
     for kind, goal in plan:
         if len(log.history) > limit:
