@@ -7,7 +7,6 @@ import igl
 import numpy as np
 import pytest
 import shapely
-from test_cli import inet, refused  # noqa: F401
 from test_repair import sheet
 
 from inetlib import design, examples, io, measure, mesh, repair
@@ -65,8 +64,8 @@ def check_panels(net, surface):
 @pytest.mark.parametrize("pair", PAIRS)
 @pytest.mark.parametrize("name", ROOFS)
 def test_roofs_with_openings_are_covered_exactly_and_to_the_edge(name, pair):
-    surface = examples.SURFACES[name](24)
-    net = cover(surface, pair, count=500, openings="fill", trim=True)
+    surface = examples.SURFACES[name](20)
+    net = cover(surface, pair, count=300, openings="fill", trim=True)
     assert measure.deviations(net.V, net.Q, *np.radians(pair)).max() < np.radians(1e-9)
     quality = measure.quality(net.V, net.Q)
     assert (quality.flips, quality.darts, net.report.converged) == (0, 0, True)
@@ -86,22 +85,22 @@ def test_roofs_with_openings_are_covered_exactly_and_to_the_edge(name, pair):
     assert 0.02 < net.report.cut_smallest < 1
 
 
-def domain(surface, openings="fill"):
-    """The flattened surface, and its area in the plane by shapely (that of a ring: by libigl)."""
+def domain(surface, openings):
+    """The flattened surface, and its area in the plane by shapely."""
     clean = repair.clean(*surface)
-    filled = opening.are_filled(openings if len(clean.loops) > 1 else None, clean.loops)
+    filled = opening.are_filled(openings, clean.loops)
     W, flat = design._flatten(clean, filled, "even")
     triangles = shapely.polygons(np.stack([flat.z[flat.F].real, flat.z[flat.F].imag], axis=2))
     return overlay.Domain(flat, W), shapely.area(triangles).sum()
 
 
-@pytest.mark.parametrize("openings", ["fill", "ring"])
-@pytest.mark.parametrize("name", ["roof", "saddle", "skylight", "five_skylights"])
+@pytest.mark.parametrize(
+    ("name", "openings"),
+    [("roof", None), ("saddle", "ring"), ("skylight", "fill"), ("five_skylights", "fill")],
+)
 def test_the_areas_of_quads_and_panels_in_the_plane_add_up(name, openings):
-    if name == "five_skylights" and openings == "ring":
-        return
     flat, area = domain(examples.SURFACES[name](16), openings)
-    for pair, count in ((PAIRS[0], 60), (PAIRS[1], 300), (PAIRS[2], 900)):
+    for pair, count in ((PAIRS[0], 60), (PAIRS[1], 200), (PAIRS[2], 300)):
         layer = overlay.cover(flat, *np.radians(pair), count, None, 0.2)
         found = trim.trim(flat, layer)
         cell = abs(np.imag(np.conj(layer.u) * layer.v))
@@ -179,11 +178,8 @@ def test_an_opening_is_left_out_or_goes_around_as_one_says():
     )
     assert np.array_equal(ring.Q, same.Q) and ring.report.winding != (0, 0)
     assert filled.report.winding == (0, 0) and len(mesh.boundary_loops(filled.Q)) == 2
-    holes = {len(repair.clean(*make(16)).loops) - 1 for make in (examples.five_skylights,)}
-    assert holes == {5}
-    twisted = sheet(40, 4, lambda u, v: (np.cos(6 * u) * (1 + v), np.sin(6 * u) * (1 + v), 0 * u))
     V, F = opening.filled(*repair.clean(*surface)[:3])
-    assert len(mesh.boundary_loops(F)) == 1 and len(twisted[0]) > 0
+    assert len(mesh.boundary_loops(F)) == 1
     assert igl.doublearea(V, F).min() > 1e-6
 
 
@@ -209,14 +205,12 @@ def test_the_grid_goes_through_a_point_and_stays_there_and_along_a_direction():
 
 def test_curves_follow_the_longest_side_of_a_roof():
     V, Q = sheet(30, 20, lambda u, v: (3 * u + v, 2 * v, 0 * u))  # a parallelogram
-    sloped = np.arctan2(2, 1)
-    for surface, angle in (((V, Q), 0.0), ((V * [0.5, 1, 1] + V[:, :1] * 0, Q), None)):
+    for width, wanted in ((3, 0.0), (0.5, np.arctan2(2, 1))):
+        surface = V * [width / 3, 1, 1] + V[:, 1:2] * [0.5 - width / 6, 0, 0], Q
         net = cover(surface, (90, 90), size=0.1, along="boundary", optimise=False)
         way = net.V[net.Q[:, 2]] - net.V[net.Q[:, 1]]
         found = np.angle(np.mean((way @ [1, 1j, 0]) ** 2)) / 2
-        wanted = np.arctan2(2, 0.5) if angle is None else angle
         assert found == pytest.approx(wanted, abs=1e-4)
-    assert sloped > 0
 
 
 TOUCHING = plate(lambda x, y: not (0 < x < 1 and 3 < y < 4) and not (1 < x < 3 and 4 < y < 6))
@@ -249,28 +243,3 @@ def test_what_cannot_be_covered_is_refused_in_a_sentence(words):
     with pytest.raises(ValueError, match=words) as caught:
         cover(surface, (60, 60), trim=True, **options)
     assert "\n" not in str(caught.value)
-
-
-def test_the_command_line_trims_and_says_so_and_refuses(inet):  # noqa: F811
-    io.write("nested.obj", *NESTED)
-    io.write("touching.obj", *TOUCHING)
-    io.write("plate.obj", *plate())
-    words = "--theta", 60, "--theta0", 60, "--quads", 60, "--trim", "-o", "net.obj"
-    for more, said in (
-        (["nested.obj"], "2 separate pieces"),
-        (["nested.obj", "--piece", 7], "piece 7: the surface has 2 separate pieces"),
-        (["touching.obj"], "two fans"),
-        (["plate.obj", "--through", "1e4,0,0"], "through"),
-        (["plate.obj", "--through", "1,2"], "x,y,z"),
-        (["plate.obj", "--align", "nan,0,0"], "x,y,z"),
-        (["plate.obj", "--along", "edge"], "boundary"),
-        (["plate.obj", "--piece", 0], "from 1 upwards"),
-    ):
-        assert refused(inet("cover", *more, *words), said)
-    assert refused(inet("cover", "plate.obj", "--theta", 60, "--theta0", 60, "--trim", "--size",
-                        "nan", "-o", "net.obj"), "nan")  # fmt: skip
-    code, out, _ = inet("cover", "nested.obj", "--largest", *words, "--along", "boundary",
-                        "--through", "1,1,0", "--curves")  # fmt: skip
-    assert code == 0 and "piece 1 of 2 is covered" in out and "cut panels, the smallest" in out
-    found = io.net("net.obj")
-    assert found.polygons and len(loops_of([*found.Q, *found.polygons])) == 2
