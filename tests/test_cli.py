@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_repair import sheet
 
 from inetlib import cli, examples, io, loxodrome, mesh, surfaces
 
@@ -435,3 +436,32 @@ def test_a_missing_package_is_named_before_the_work(inet, monkeypatch, suffix):
     monkeypatch.setattr(io.importlib.util, "find_spec", lambda name: None)
     words = "web", "--profile=cone", *ANGLES, "-m", 8, "-o", f"a{suffix}"
     assert refused(inet(*words), "pip install")
+
+
+def test_the_command_line_trims_and_says_so_and_refuses(inet):
+    V, Q = sheet(12, 8, lambda u, v: (12 * u, 8 * v, 0 * u))
+    off = np.abs(V[Q].mean(axis=1) - [5, 4, 0])
+    nested = V, Q[(off[:, :2].max(axis=1) > 3) | (off[:, :2].max(axis=1) < 2)]
+    touching = V, np.delete(Q, [3, 12], axis=0)
+    io.write("nested.obj", *nested)
+    io.write("touching.obj", *touching)
+    io.write("plate.obj", V, Q)
+    words = "--theta", 60, "--theta0", 60, "--quads", 60, "--trim", "-o", "net.obj"
+    for more, said in (
+        (["nested.obj"], "2 separate pieces"),
+        (["nested.obj", "--piece", 7], "piece 7: the surface has 2 separate pieces"),
+        (["touching.obj"], "two fans"),
+        (["plate.obj", "--through", "1e4,0,0"], "through"),
+        (["plate.obj", "--through", "1,2"], "x,y,z"),
+        (["plate.obj", "--align", "nan,0,0"], "x,y,z"),
+        (["plate.obj", "--along", "edge"], "boundary"),
+        (["plate.obj", "--piece", 0], "from 1 upwards"),
+    ):
+        assert refused(inet("cover", *more, *words), said)
+    assert refused(inet("cover", "plate.obj", "--theta", 60, "--theta0", 60, "--trim", "--size",
+                        "nan", "-o", "net.obj"), "nan")  # fmt: skip
+    code, out, _ = inet("cover", "nested.obj", "--largest", *words, "--along", "boundary",
+                        "--through", "1,1,0", "--curves")  # fmt: skip
+    assert code == 0 and "piece 1 of 2 is covered" in out and "cut panels, the smallest" in out
+    found = io.net("net.obj")
+    assert found.polygons and len(found.Q) > 20

@@ -151,7 +151,8 @@ def _layer(domain, u, v, winding):
     copies = [domain.lift(centre + copy)[0] for copy in {0, period, -period}]
     whole[whole] = np.any(copies, axis=0)
     for hole in domain.openings:
-        whole[whole] = ~_meet(cells(i[whole], j[whole], u, v), hole)
+        near = np.flatnonzero(whole)[_near(i[whole], j[whole], u, v, hole)]
+        whole[near] = ~_meet(cells(i[near], j[near], u, v), hole)
     if not whole.any():
         return None
     ij = np.stack(turned(domain, u, v, winding, i, j), axis=1)
@@ -164,6 +165,14 @@ def cells(i: np.ndarray, j: np.ndarray, u: complex, v: complex) -> np.ndarray:
     """The cells (k,) of the grid from i u + j v to (i + 1) u + (j + 1) v, as polygons."""
     corners = np.stack([(i + a) * u + (j + b) * v for a, b in ((0, 0), (1, 0), (1, 1), (0, 1))], 1)
     return shapely.polygons(np.stack([corners.real, corners.imag], axis=2))
+
+
+def _near(i, j, u, v, hole):
+    """Whether the cells from i, j on are close to the hole's box."""
+    left, low, right, high = hole.bounds
+    z, reach = i * u + j * v, abs(u) + abs(v)
+    beside = np.maximum(left - z.real, z.real - right), np.maximum(low - z.imag, z.imag - high)
+    return np.maximum(*beside) <= reach
 
 
 def _meet(cells, hole):

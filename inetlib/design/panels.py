@@ -13,6 +13,7 @@ from . import overlay
 from .regions import NONE, Regions, sides
 
 SLIVER = 0.1  # of a quad: smaller faces become parts of their neighbours
+SHORT = 0.3  # of the longest side it shares: where a sliver shares less, there it would be a spike
 STRAIGHT = 0.01  # radians: a line of the grid turns by less
 MOST = 6  # corners
 BULGE = 0.1  # of an edge: a boundary farther from a side gets a corner; one too many, at 2 BULGE
@@ -100,7 +101,7 @@ def _quad(layer, q):
 def _partner(sliver, faces, owner, cell):
     """(key, what both become) of the neighbour with the longest common side.
 
-    A cut one that is no sliver, else a quad, else another sliver."""
+    A cut one that is no sliver and has not just a corner of it, else a quad, else what is left."""
     face, common = faces[sliver], {}
     lengths = np.abs(np.roll(face.z, -1) - face.z)
     for key, length in zip(over(face, owner), lengths, strict=True):
@@ -110,7 +111,8 @@ def _partner(sliver, faces, owner, cell):
     length = np.array([common[k] for k in keys])
     rank = ties.ranks(-length, ties.TIE * length.sum()) if len(keys) else []
     later = None, None
-    small = np.array([k >= 0 and faces[k].area < SLIVER * cell for k in keys], dtype=int)
+    area = np.array([faces[k].area for k in keys])
+    small = (keys >= 0) & ((area < SLIVER * cell) | (length < SHORT * max(length, default=0)))
     for k in np.lexsort([rank, 2 * small + (keys < 0)]):
         both = _joined(face, faces[keys[k]])
         if both is not None:
@@ -172,7 +174,7 @@ def _corners(face, owner, turn, edge, forced):
         sound = _is_sound(z[chosen])
         if where is None:
             return chosen
-        full = 0.5 if turn[ring[where]] > CORNER else 2  # these make two panels of one
+        full = 0.25 if turn[ring[where]] > CORNER else 2  # these make two panels of one
         if sound and far < BULGE * edge * (1 if len(chosen) < MOST else full):
             return chosen
         chosen = np.union1d(chosen, where)
@@ -237,7 +239,8 @@ def _split(face, corners):
 
 def _is_sound(z):
     """Whether points are the corners of a polygon without crossings, counter-clockwise."""
-    return len(z) > 2 and Face(z, z).area > 0 and bool(shapely.is_valid(_polygon(z)))
+    turns = np.imag(np.conj(z) @ np.roll(z, -1)) > 0
+    return len(z) > 2 and bool(turns and shapely.is_valid(_polygon(z)))
 
 
 def _polygon(z):

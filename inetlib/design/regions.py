@@ -201,7 +201,8 @@ def _touched(domain, layer, rings, edge):
 
 def sides(ring: np.ndarray) -> list[tuple[int, int]]:
     """The pairs of numbers that follow each other in a ring."""
-    return list(zip(ring.tolist(), np.roll(ring, -1).tolist(), strict=True))
+    points = ring.tolist()
+    return list(zip(points, points[1:] + points[:1], strict=True))
 
 
 def coordinates(layer: overlay.Layer, z: np.ndarray) -> np.ndarray:

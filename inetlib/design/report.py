@@ -116,9 +116,9 @@ def survey(
     cut = sum(float(np.linalg.norm(_area_vector(V[polygon]))) for polygon in polygons)
     covered = (area_of(V, Q) + cut) / area_of(goal.V, goal.F)
     notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))
-    holes = 0 if polygons else holes
     scale_ratio = float(flat.scale.max() / flat.scale.min())
-    if covered < COVERED or holes > 0 or back.max() > FAR * net.edge_high:
+    gaps = holes > 0 or back.max() > FAR * net.edge_high
+    if covered < COVERED or (gaps and not polygons):
         why = "the quads are large for its width, ask for more"
         if scale_ratio > SHRUNK:
             why = f"the map to the plane has scales {scale_ratio:.3g} times apart, cut the surface"
