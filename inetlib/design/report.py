@@ -110,7 +110,10 @@ def survey(
     net, fans = report(V, Q, polygons, theta=theta, theta0=theta0), [mesh.triangles(V, Q)[1]]
     fans += [np.stack([np.full(len(p) - 2, p[0]), p[1:-1], p[2:]], axis=1) for p in polygons]
     T = np.concatenate(fans)
-    outline = np.stack(mesh.half_edges(T), axis=1)[mesh.opposites(T) < 0]
+    sides = [np.stack(mesh.half_edges(Q)), *(np.stack([p, np.roll(p, -1)]) for p in polygons)]
+    (start, end), n = np.concatenate(sides, axis=1), len(V)
+    alone = ~np.isin(start * n + end, end * n + start)
+    outline = np.stack([start, end], axis=1)[alone]
     back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, V, x)[0]) for x in (T, outline))
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
     cut = sum(float(np.linalg.norm(_area_vector(V[polygon]))) for polygon in polygons)
