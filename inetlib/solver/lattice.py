@@ -62,7 +62,7 @@ def find(Q: np.ndarray, neighbours: np.ndarray) -> tuple[np.ndarray, Piece | Non
     once = [(jumps == k * period).all(axis=1) for k in (0, 1, -1)]
     piece = Piece(place, period * int(np.any(once, axis=0).all()))
     at, box = _boxed(piece)[:2]
-    alone = np.prod(box) <= LOOSE * count and len(np.unique(at @ [box[1], 1])) == count
+    alone = np.prod(box) <= LOOSE * count and np.bincount(at @ [box[1], 1]).max() == 1
     turned = np.where(sign[:, None] < 0, np.roll(Q, 2, axis=1), Q)
     return turned, piece if alone else None
 
@@ -112,7 +112,7 @@ def solve(
     one, two = np.moveaxis(J.data.reshape(count, 2, width), 1, 0)
     rows = np.stack([i00[:, None] * one, i10[:, None] * one + i11[:, None] * two])
     index = np.moveaxis(J.indices.reshape(count, 2, width), 1, 0).ravel()
-    J = csr_array((rows.ravel(), index, np.arange(0, index.size + 1, width)), shape=J.shape)
+    J = csr_array((rows.ravel(), index, J.indptr), shape=J.shape)  # all rows are of one length
     back, nearly = J.T, waves(piece, rows.reshape(2, count, 4, -1))
     matrix = LinearOperator((len(b),) * 2, lambda y: J @ (back @ y), dtype=float)
     nearly = LinearOperator((len(b),) * 2, nearly, dtype=float)

@@ -25,7 +25,9 @@ def rows(jacobian: np.ndarray, index: np.ndarray, columns: int) -> csr_array:
 
     index: (f, k), the column of each local variable; within a row all different."""
     f, q, k = jacobian.shape
-    pattern = np.repeat(index, q, axis=0).ravel(), np.arange(0, f * q * k + 1, k)
+    whole = np.int32 if max(columns, f * q * k) < 2**31 else np.int64  # SciPy checks the longer
+    index, ends = np.asarray(index, dtype=whole), np.arange(0, f * q * k + 1, k, dtype=whole)
+    pattern = np.repeat(index, q, axis=0).ravel(), ends
     return csr_array((np.ascontiguousarray(jacobian).ravel(), *pattern), shape=(f * q, columns))
 
 
