@@ -100,7 +100,7 @@ def domain(surface, openings):
 )
 def test_the_areas_of_quads_and_panels_in_the_plane_add_up(name, openings):
     flat, area = domain(examples.SURFACES[name](16), openings)
-    for pair, count in ((PAIRS[0], 60), (PAIRS[1], 200), (PAIRS[2], 300)):
+    for pair, count in ((PAIRS[0], 60), (PAIRS[2], 200)):
         layer = overlay.cover(flat, *np.radians(pair), count, None, 0.2)
         found = trim.trim(flat, layer)
         cell = abs(np.imag(np.conj(layer.u) * layer.v))
