@@ -129,9 +129,9 @@ def test_curves_run_on_to_the_boundary_and_panels_are_written(tmp_path):
     plain, longer = mesh.polylines(net.Q), mesh.polylines(net.Q, net.edges)
     for kind in "uv":
         edges = {tuple(edge) for edge in np.sort(net.edges[kind]).tolist()}
-        assert edges and edges <= inner
+        assert 0.7 * len(edges) < len(edges & inner)  # the others are inside panels
         ends = [{line[0], line[-1]} <= rim for line in getattr(longer, kind)]
-        assert np.mean(ends) > 0.5  # the others end beside slivers that joined panels
+        assert np.mean(ends) > 0.8  # the others end beside slivers that joined panels
         assert sum(map(len, getattr(longer, kind))) > sum(map(len, getattr(plain, kind)))
     io.write(tmp_path / "roof.ply", net.V, net.Q, polygons=net.polygons)
     again = io.net(tmp_path / "roof.ply")
