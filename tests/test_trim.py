@@ -196,6 +196,10 @@ def test_the_grid_goes_through_a_point_and_stays_there_and_along_a_direction():
     k = list(line).index(node)
     way = net.V[line[k + 1]] - net.V[line[k - 1]]
     assert abs(way[0] - way[1]) < 0.05 * np.linalg.norm(way[:2])
+    tip = V[np.argmax(V[:, 0] - V[:, 1])]  # a corner of the roof narrower than those of a quad
+    outside = [cover((V, F), (75, 50), count=99, through=tip, trim=trim) for trim in (False, True)]
+    assert [any("go through" in x for x in net.report.notes) for net in outside] == [True, False]
+    assert np.linalg.norm(outside[1].V - tip, axis=1).min() < 1e-9
     turned = cover((V, F), (75, 50), count=300, align=(1, 1, 0), direction=0.5, optimise=False)
     other = cover((V, F), (75, 50), count=300, align=(1, 1, 0), optimise=False)
     a, b = (x.V[x.Q[:, 2]] - x.V[x.Q[:, 1]] for x in (turned, other))
