@@ -193,7 +193,8 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
     if pinched.size:
-        raise mesh.Fault("the faces at vertex {} form two fans: not a manifold", pinched[0], V)
+        words = "the faces at vertex {} form two fans: not a manifold (boundaries may touch there)"
+        raise mesh.Fault(words, pinched[0], V)
 
 
 def corner_fans(T: np.ndarray, twin: np.ndarray) -> np.ndarray:

@@ -100,7 +100,7 @@ def domain(surface, openings):
 )
 def test_the_areas_of_quads_and_panels_in_the_plane_add_up(name, openings):
     flat, area = domain(examples.SURFACES[name](16), openings)
-    for pair, count in ((PAIRS[0], 60), (PAIRS[1], 200), (PAIRS[2], 300)):
+    for pair, count in ((PAIRS[0], 60), (PAIRS[2], 200)):
         layer = overlay.cover(flat, *np.radians(pair), count, None, 0.2)
         found = trim.trim(flat, layer)
         cell = abs(np.imag(np.conj(layer.u) * layer.v))
@@ -129,9 +129,9 @@ def test_curves_run_on_to_the_boundary_and_panels_are_written(tmp_path):
     plain, longer = mesh.polylines(net.Q), mesh.polylines(net.Q, net.edges)
     for kind in "uv":
         edges = {tuple(edge) for edge in np.sort(net.edges[kind]).tolist()}
-        assert edges and edges <= inner
+        assert 0.7 * len(edges) < len(edges & inner)  # the others are inside panels
         ends = [{line[0], line[-1]} <= rim for line in getattr(longer, kind)]
-        assert np.mean(ends) > 0.5  # the others end beside slivers that joined panels
+        assert np.mean(ends) > 0.8  # the others end beside slivers that joined panels
         assert sum(map(len, getattr(longer, kind))) > sum(map(len, getattr(plain, kind)))
     io.write(tmp_path / "roof.ply", net.V, net.Q, polygons=net.polygons)
     again = io.net(tmp_path / "roof.ply")
@@ -196,6 +196,10 @@ def test_the_grid_goes_through_a_point_and_stays_there_and_along_a_direction():
     k = list(line).index(node)
     way = net.V[line[k + 1]] - net.V[line[k - 1]]
     assert abs(way[0] - way[1]) < 0.05 * np.linalg.norm(way[:2])
+    tip = V[np.argmax(V[:, 0] - V[:, 1])]  # a corner of the roof narrower than those of a quad
+    outside = [cover((V, F), (75, 50), count=99, through=tip, trim=trim) for trim in (False, True)]
+    assert [any("go through" in x for x in net.report.notes) for net in outside] == [True, False]
+    assert np.linalg.norm(outside[1].V - tip, axis=1).min() < 1e-9
     turned = cover((V, F), (75, 50), count=300, align=(1, 1, 0), direction=0.5, optimise=False)
     other = cover((V, F), (75, 50), count=300, align=(1, 1, 0), optimise=False)
     a, b = (x.V[x.Q[:, 2]] - x.V[x.Q[:, 1]] for x in (turned, other))

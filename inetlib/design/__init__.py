@@ -128,6 +128,9 @@ def cover(
     words += _away(found, surface) if done else ""
     found = found._replace(converged=done, message=words, winding=layer.winding)
     found = found._replace(repairs=tuple(surface.repairs), seconds=seconds)
+    if not (through is None or trim or len(pinned)):
+        missed = "no whole quad reaches the point to go through: trim the net, or ask for more"
+        found = found._replace(notes=(*found.notes, missed))
     if not trim:
         return Cover(net, layer.Q, found, [])
     return Cover(net, layer.Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)

@@ -52,10 +52,11 @@ def fixed(face: Face, owner: dict) -> np.ndarray:
     return np.array([a != b for a, b in zip(before, after, strict=True)]) | whole | inner & bent
 
 
-def merged(found: Regions) -> tuple[overlay.Layer, list]:
-    """(the layer, `Face`s) of regions whose slivers have become parts of their neighbours.
+def merged(found: Regions) -> tuple[overlay.Layer, list, list]:
+    """(the layer, `Face`s, the sides between them that are gone, as `Face`s of two points).
 
-    Where only whole quads are around, one of them is whole no longer."""
+    Slivers have become parts of their neighbours.  Where only whole quads are around, one of
+    them is whole no longer."""
     layer = found.layer
     cell = abs(np.imag(np.conj(layer.u) * layer.v))
     faces = dict(enumerate(map(Face, found.rings, found.z)))
@@ -64,7 +65,7 @@ def merged(found: Regions) -> tuple[overlay.Layer, list]:
         quads = np.flatnonzero(np.isin(layer.Q, near).any(axis=1))
         near = layer.Q[quads]
     faces |= {-1 - int(q): _quad(layer, q) for q in quads}
-    owner, count = owners(faces), len(found.rings)
+    owner, count, gone = owners(faces), len(found.rings), []
     area = np.array([faces[k].area for k in range(count)])
     order = np.argsort(ties.ranks(area, ties.TIE * cell), kind="stable") if count else []
     queue = [int(k) for k in order if area[k] < SLIVER * cell]
@@ -73,6 +74,10 @@ def merged(found: Regions) -> tuple[overlay.Layer, list]:
         other, face = _partner(sliver, faces, owner, cell)
         if face is None:
             continue
+        one = faces[sliver]
+        for k in np.flatnonzero([key == other for key in over(one, owner)]):
+            at = [k, (k + 1) % len(one.ring)]
+            gone.append(Face(one.ring[at], one.z[at]))
         for side in (*sides(faces[sliver].ring), *sides(faces[other].ring)):
             del owner[side]
         del faces[sliver], faces[other]
@@ -89,7 +94,7 @@ def merged(found: Regions) -> tuple[overlay.Layer, list]:
         raise ValueError(NONE)
     lost = np.flatnonzero(whole & ~kept)
     cut = [face for key, face in faces.items() if key >= 0]
-    return layer._replace(Q=layer.Q[kept]), [*cut, *(_quad(layer, q) for q in lost)]
+    return layer._replace(Q=layer.Q[kept]), [*cut, *(_quad(layer, q) for q in lost)], gone
 
 
 def _quad(layer, q):

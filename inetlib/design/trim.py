@@ -9,7 +9,9 @@ import numpy as np
 import shapely
 
 from .. import mesh
+from ..reference import CORNER
 from . import overlay, panels
+from .panels import Face
 from .regions import NEAR, coordinates, regions
 
 ON = 1e-6  # of a cell: points this close to a line of the grid are on it
@@ -22,7 +24,7 @@ class Trimmed(NamedTuple):
     extra: np.ndarray  # (m, 3) further vertices on the surface, numbered after the layer's
     polygons: list  # index arrays of the panels, counter-clockwise like the quads
     areas: np.ndarray  # of the panels in the plane, up to the boundary itself
-    edges: dict  # {"u": (k, 2), "v": (k, 2)} sides of panels on lines of the grid
+    edges: dict  # {"u": (k, 2), "v": (k, 2)} on lines of the grid, between or inside panels
 
     @property
     def smallest(self) -> float:
@@ -36,7 +38,7 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
 
     ValueError where the boundary of the flattened surface crosses itself."""
     found = regions(domain, layer)
-    layer, faces = panels.merged(found)
+    layer, faces, gone = panels.merged(found)
     count = 1 + max(int(layer.Q.max()), *(int(face.ring.max()) for face in faces), 0)
     place = np.zeros(count, dtype=complex)
     for face in faces:
@@ -45,16 +47,20 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
     points = np.unique(np.concatenate([np.zeros(0, int), *(face.ring for face in faces)]))
     turn, V = np.zeros(count), np.zeros((count, 3))
     turn[points], V[points] = _lifted(domain, found.outline, place[points])
+    for side in gone:  # where curves end at the boundary inside a panel, it gets a corner, too
+        turn[side.ring] = np.maximum(np.abs(turn[side.ring]), CORNER * (1 + ON))
     parts = panels.cornered(faces, layer.Q, turn, edge)
     rings = [face.ring[corners] for face, corners in parts]
     used = np.unique(np.concatenate([np.zeros(0, int), *rings]))
     extra = np.setdiff1d(used, layer.Q)
     whole = np.unique(layer.Q)
-    number = np.zeros(count, dtype=np.int64)
+    number = np.full(count, -1)
     number[whole], number[extra] = np.arange(len(whole)), len(whole) + np.arange(len(extra))
     areas = np.array([face.area for face, _ in parts])
     layer = layer.kept(layer.Q)
-    edges = _edges(layer, [(number[face.ring[k]], face.z[k]) for face, k in parts])
+    drawn = [face for face in gone if (number[face.ring] >= 0).all()]
+    drawn += [Face(face.ring[k], face.z[k]) for face, k in parts]
+    edges = _edges(layer, [(number[face.ring], face.z) for face in drawn])
     return Trimmed(layer, V[extra], [number[ring] for ring in rings], areas, edges)
 
 
@@ -87,9 +93,5 @@ def _edges(layer, rings):
             often[pair] = often.get(pair, 0) + 1
             kinds[pair] = "u" if on_u else "v" if on_v else None
     inner = sorted(pair for pair, count in often.items() if count == 2 and pair not in known)
-    return {
-        kind: np.array([pair for pair in inner if kinds[pair] == kind], dtype=np.int64).reshape(
-            -1, 2
-        )
-        for kind in "uv"
-    }
+    pairs = {kind: [pair for pair in inner if kinds[pair] == kind] for kind in "uv"}
+    return {kind: np.array(x, dtype=np.int64).reshape(-1, 2) for kind, x in pairs.items()}

@@ -29,9 +29,9 @@ OPTIONS = {
         "roof": "Roof (example)",
         "saddle": "Saddle with a hole (example)",
         "shell": "Hanging shell (example)",
-        "skylight": "One skylight (example)",
-        "two_skylights": "Two skylights (example)",
-        "five_skylights": "Five skylights (example)",
+        "skylight": "Roof with a hole (example)",
+        "two_skylights": "Vault with two openings (example)",
+        "five_skylights": "Dome with five openings (example)",
         "file": "The file of the command line",
     },
     "openings": {  # of a surface with one hole; more are openings by themselves
