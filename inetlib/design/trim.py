@@ -10,8 +10,9 @@ import shapely
 
 from .. import mesh
 from ..reference import CORNER
-from . import overlay, panels
-from .panels import Face
+from . import faces as cut
+from . import overlay
+from .faces import Face
 from .regions import NEAR, coordinates, regions
 
 ON = 1e-6  # of a cell: points this close to a line of the grid are on it
@@ -38,7 +39,7 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
 
     ValueError where the boundary of the flattened surface crosses itself."""
     found = regions(domain, layer)
-    layer, faces, gone = panels.merged(found)
+    layer, faces, gone = cut.merged(found)
     count = 1 + max(int(layer.Q.max()), *(int(face.ring.max()) for face in faces), 0)
     place = np.zeros(count, dtype=complex)
     for face in faces:
@@ -49,7 +50,7 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
     turn[points], V[points] = _lifted(domain, found.outline, place[points])
     for side in gone:  # where curves end at the boundary inside a panel, it gets a corner, too
         turn[side.ring] = np.maximum(np.abs(turn[side.ring]), CORNER * (1 + ON))
-    parts = panels.cornered(faces, layer.Q, turn, edge)
+    parts = cut.cornered(faces, layer.Q, turn, edge)
     rings = [face.ring[corners] for face, corners in parts]
     used = np.unique(np.concatenate([np.zeros(0, int), *rings]))
     extra = np.setdiff1d(used, layer.Q)
