@@ -9,7 +9,7 @@ endif
 BIN := .venv/$(SCRIPTS)
 READY := .venv/ready
 
-.PHONY: help figures gallery book course test test-fast test-long test-browser test-book test-oldest \
+.PHONY: help figures redraw gallery book course test test-fast test-long test-browser test-book test-oldest \
 	test-newest notebooks explore bench lint clean
 
 help:
@@ -33,7 +33,10 @@ help:
 $(READY): pyproject.toml constraints.txt tools/setup.py
 	$(PYTHON) tools/setup.py
 
-figures: gallery
+figures: $(READY)
+	$(MAKE) --jobs=2 gallery redraw
+
+redraw: $(READY)
 	$(BIN)/python tools/redraw.py
 
 gallery: $(READY)
