@@ -89,7 +89,7 @@ def report(
     sizes = map(float, (edges.min(), edges.mean(), edges.max(), d1.max() / d1.min()))
     ends = ties.first_smallest(d1), ties.first_largest(d1)
     where = (tuple(V[Q[k]].mean(axis=0).tolist()) for k in ends)
-    vertices = np.count_nonzero(np.bincount(np.concatenate([Q.ravel(), *polygons])))
+    vertices = int(np.count_nonzero(np.bincount(np.concatenate([Q.ravel(), *polygons]))))
     counts = vertices, len(Q), tuple(sorted(map(len, polygons)))
     known = (*counts, wanted, *spreads, *shape, *sizes, *where)
     return Report(*known)
