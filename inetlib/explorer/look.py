@@ -103,9 +103,9 @@ def layout(Q, count, families, parallelograms=False, cover=None) -> Layout:
         lines |= {name: np.concatenate([lines[name], cover.edges[name]]) for name in "uv"}
         more = [np.stack([p, np.roll(p, -1)], axis=1) for p in cover.polygons]
         every = np.unique(np.concatenate([edges, np.sort(np.concatenate(more), axis=1)]), axis=0)
-        pairs = np.concatenate([every, lines["u"], lines["v"]])
+        pairs = np.concatenate([every, every, lines["u"], lines["v"]])
         pairs, times = np.unique(pairs, axis=0, return_counts=True)
-        rim = {"rim": pairs[times == 1]}  # sides of panels on no curve
+        rim = {"rim": pairs[times == 2]}  # sides of panels on no curve
     return Layout(means, quads, triangles, cut, {name: lines[name] for name in families} | rim)
 
 
