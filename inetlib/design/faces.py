@@ -53,7 +53,8 @@ def fixed(face: Face, owner: dict) -> np.ndarray:
 
 
 def merged(found: Regions) -> tuple[overlay.Layer, list, list]:
-    """(the layer, `Face`s, the sides between them that are gone, as `Face`s of two points).
+    """(the layer, a list of `Face`, and one of the sides between them that are gone, each of
+    these a `Face` of two points).
 
     Slivers have become parts of their neighbours.  Where only whole quads are around, one of
     them is whole no longer."""
