@@ -15,6 +15,7 @@ from tqdm import tqdm
 
 from .. import parallelogram, reference, repair, solver
 from ..solver.run import timed
+from ..solver.sparse import BLAS
 from . import flatten, opening, overlay, steer
 from .report import Report, area_of, survey
 from .trim import trim as cut
@@ -117,7 +118,7 @@ def cover(
     pinned = np.flatnonzero(~layer.ij.any(axis=1)) if through is not None else []
     net, done, words = layer.V, False, "not optimised"
     if optimise:
-        with timed(seconds, "optimise"):
+        with timed(seconds, "optimise"), BLAS.limit(limits=1, user_api="blas"):  # more only wait
             ways = {"reference": goal, "tolerance": tolerance, "progress": progress}
             ways["fixed"] = pinned if len(pinned) else None
             net, done, words = _optimise(layer, theta, theta0, callback, ways)
