@@ -112,7 +112,7 @@ def survey(
     T = np.concatenate(fans)
     sides = [np.stack(mesh.half_edges(Q)), *(np.stack([p, np.roll(p, -1)]) for p in polygons)]
     (start, end), n = np.concatenate(sides, axis=1), len(V)
-    alone = ~np.isin(start * n + end, end * n + start)
+    alone = ~np.isin(start * n + end, end * n + start, assume_unique=True)
     outline = np.stack([start, end], axis=1)[alone]
     back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, V, x)[0]) for x in (T, outline))
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net

@@ -110,17 +110,18 @@ def solve(
     count, width = len(piece.place), J.data.size // len(b)
     i00, i10, i11 = _scale(J.data.reshape(count, 2, width), more)
     one, two = np.moveaxis(J.data.reshape(count, 2, width), 1, 0)
-    rows = np.stack([i00[:, None] * one, i10[:, None] * one + i11[:, None] * two])
+    rows = np.empty((2, count, width), dtype=np.float32)
+    rows[0], rows[1] = i00[:, None] * one, i10[:, None] * one + i11[:, None] * two
     index = np.moveaxis(J.indices.reshape(count, 2, width), 1, 0).ravel()
     J = csr_array((rows.ravel(), index, J.indptr), shape=J.shape)  # all rows are of one length
     back, nearly = J.T, waves(piece, rows.reshape(2, count, 4, -1))
-    matrix = LinearOperator((len(b),) * 2, lambda y: J @ (back @ y), dtype=float)
-    nearly = LinearOperator((len(b),) * 2, nearly, dtype=float)
+    matrix = LinearOperator((len(b),) * 2, lambda y: J @ (back @ y), dtype=np.float32)
+    nearly = LinearOperator((len(b),) * 2, nearly, dtype=np.float32)
     columns = []
     with BLAS.limit(limits=1, user_api="blas"):  # more threads only wait here
         for column in b.T if np.isfinite(b).all() else ():
             one, two = column.reshape(-1, 2).T
-            scaled = np.concatenate([i00 * one, i10 * one + i11 * two])
+            scaled = np.concatenate([i00 * one, i10 * one + i11 * two]).astype(np.float32)
             y, left = cg(matrix, scaled, rtol=tolerance, maxiter=MOST, M=nearly)
             one, two = y.reshape(2, -1)
             columns += [] if left else [np.stack([i00 * one + i10 * two, i11 * two], 1).ravel()]
@@ -149,7 +150,7 @@ def waves(piece: Piece, rows: np.ndarray) -> Callable:
         z = np.empty((2, *one.shape), dtype=one.dtype)
         np.add(w00 * one, w01 * two, out=z[0])
         np.add(w10 * one, w11 * two, out=z[1])
-        return back(z).reshape(2, -1).take(at, axis=1, mode="clip").astype(float).ravel()
+        return back(z).reshape(2, -1).take(at, axis=1, mode="clip").ravel()
 
     return apply
 
@@ -198,13 +199,13 @@ def _inverse_waves(place, rows, turn, longest):
     table = np.full(place.max(axis=0) + 3, -1)  # empty places around: no face has them
     table[tuple((place + 1).T)] = np.arange(len(place))
     s00, s01, s11 = 1.0, 0.0, 1.0
+    some = np.arange(0, len(place), 1 + len(place) // SAMPLES)
     for step, corners in SHARED.items():
-        other = table[tuple((place + 1 + step).T)]
-        face = np.flatnonzero(other >= 0)
-        face = face[:: 1 + len(face) // SAMPLES]
+        other = table[tuple((place[some] + 1 + step).T)]
+        face, other = some[other >= 0], other[other >= 0]
         C = np.zeros((2, 2))
         for one, two in corners:
-            C += np.einsum("qfk,pfk->qp", rows[:, face, one], rows[:, other[face], two])
+            C += np.einsum("qfk,pfk->qp", rows[:, face, one], rows[:, other, two])
         C /= max(len(face), 1)
         there = turn(step)
         s00 = s00 + 2 * C[0, 0] * there.real

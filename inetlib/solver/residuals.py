@@ -48,7 +48,9 @@ def log_ratios(x: np.ndarray) -> Local:
 
     x: (f, 12).  Free of scale; subtract the wanted logarithms to get a residual.
     Paper: Eq. (11), Eq. (12)."""
-    found, (one, two) = logarithms(*np.moveaxis(_vectors(x, [0, 1, 2, 3]), 2, 1))
+    v1, v2, v3, v4 = np.ascontiguousarray(x.T).reshape(4, 3, -1)
+    d1, d2 = v3 - v1, v4 - v2
+    found, (one, two) = logarithms(d1, d2, d1 + d2, d2 - d1)
     jacobian = np.stack([one, -two, -one, two], axis=1)  # (ratio, corner, xyz, face)
     return found.T, np.moveaxis(jacobian, 3, 0).reshape(-1, 2, 12)
 

@@ -19,7 +19,8 @@ Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
 MANY = 4000  # faces: from here on waves beat factors where the mesh is a piece of a grid
-WAVES = 3e-3  # relative residual of a smallest step by waves, at most
+WAVES = 1e-2  # relative residual of a smallest step by waves, at most
+SETTLED = 1e-6  # radians, about: then vertices this close (in diagonals) to a surface stay so
 EXACT = 3e-12  # radians, about: smaller errors of the angles are not aimed at by waves
 COUPLING = 100  # weight of shifting every other vertex in the size of a coupled step
 LOOSE = 1e-6, 0.0  # weights of that size, and of the distances from the reference, at the end
@@ -193,7 +194,7 @@ def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
     the vertices go to their closest points and move along the tangent planes there."""
     with timed(problem.seconds, "assemble"):
         f, J, G = equations(problem, V, goal, s)
-        free, root, lift = _metric(problem, V)
+        free, root, lift = _metric(problem, V, np.abs(f).max() <= SETTLED)
         right = np.column_stack([f + J @ lift, G])
         J = free(J)
     y = _smallest(problem, J, right, f)
@@ -228,7 +229,7 @@ def _freedom(A, b):
     return np.linalg.lstsq(A, b, rcond=None)[0]
 
 
-def _metric(problem, V):
+def _metric(problem, V, settled):
     """(J -> J R, R, the way onto the surface); R R^T tells how freely the coordinates move."""
     root = np.sqrt(problem.mobility)
     if not problem.on_surface:
@@ -237,15 +238,18 @@ def _metric(problem, V):
     feet, normals = problem.reference.closest(V)
     frames, at = _tangents(normals) * root[:, None, None], np.arange(len(V) + 1)
     R = bsr_array((frames, at[:-1], at), shape=(V.size, 2 * len(V)))
-    lift = np.where(root[:, None] > 0, feet - V, 0.0).ravel()
+    lift = np.where(root[:, None] > 0, feet - V, 0.0)
+    near = SETTLED * problem.reference.diagonal
+    if settled and np.linalg.norm(lift, axis=1).max() <= near:  # else it would take a step more
+        lift[:] = 0
     columns = (2 * problem.Q[..., None] + np.arange(2)).reshape(-1, 8)
 
     def free(J):
         local = J.data.reshape(-1, 2, 4, 3)
-        along = np.einsum("fqcx,fcxk->fqck", local, frames[problem.Q])
+        along = np.swapaxes(np.swapaxes(local, 1, 2) @ frames[problem.Q], 1, 2)
         return sparse.rows(along.reshape(-1, 2, 8), columns, R.shape[1])
 
-    return free, R, lift
+    return free, R, lift.ravel()
 
 
 def _tangents(normals):
