@@ -174,16 +174,23 @@ class Quality(NamedTuple):
 
 def quality(V: ArrayLike, Q: ArrayLike) -> Quality:
     """The `Quality` of a mesh; ValueError where a face has no area."""
-    (d1, d2, _, _), (length1, length2, length13, length24) = _vectors_and_lengths(V, Q)
+    (d1, d2, _, _), (_, _, length13, length24) = _vectors_and_lengths(V, Q)
     normal, twice_area = _normals(d1, d2, Q)
     turned = _against(normal, mesh.face_neighbours(Q))
     aspect = np.maximum(length13 / length24, length24 / length13).max()
-    v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
-    apart = (np.abs(_dot(v2 - v1, normal)) / ((length1 + length2) / 2)).max()
-    numbers = twice_area.min() / twice_area.max(), aspect, apart
+    numbers = twice_area.min() / twice_area.max(), aspect, planarity(V, Q).max()
     bent = nonconvex(V, Q)
     corner = float(np.min(corners(V, Q)))
     return Quality(len(turned), turned, len(bent), bent, corner, *map(float, numbers))
+
+
+def planarity(V: ArrayLike, Q: ArrayLike) -> np.ndarray:
+    """The distance between the diagonals of every face over their mean length: (f,).
+
+    0 is flat; ValueError where a face has no area."""
+    (d1, d2, _, _), (one, two, _, _) = _vectors_and_lengths(V, Q)
+    v1, v2 = np.asarray(V, dtype=float)[np.asarray(Q)[:, :2].T]
+    return np.abs(_dot(v2 - v1, _normals(d1, d2, Q)[0])) / ((one + two) / 2)
 
 
 def corners(V: ArrayLike, Q: ArrayLike) -> np.ndarray:

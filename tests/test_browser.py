@@ -170,13 +170,18 @@ def test_the_profile_can_be_edited(tab):
 def test_families_parallelograms_and_shading_can_be_shown(tab):
     reader = tab("kind=isothermal&m=8&n=10&families=u")
     seen = [reader.picture()]
-    for name in ("v", "d1", "d2", "parallelograms", "shade"):
+    for name in ("v", "d1", "d2", "parallelograms"):
         reader.page.locator(f".in-{name} input").check()
         reader.settled()
         seen.append(reader.picture())
         assert np.abs(seen[-1] - seen[-2]).mean() > 0.2, name
+    for name, words in list(choices.OPTIONS["shade"].items())[1:]:
+        reader.choose("shade", words)
+        seen.append(reader.picture())
+        assert np.abs(seen[-1] - seen[-2]).mean() > 0.2 and reader.text(".out-legend"), name
     choice = reader.choice()
-    assert choice.families == choices.FAMILIES and choice.parallelograms and choice.shade
+    assert choice.families == choices.FAMILIES and choice.parallelograms
+    assert choice.shade == "planarity"
 
 
 def test_both_ends_of_both_sliders_leave_a_page_that_works(tab):

@@ -98,7 +98,7 @@ def test_a_wrong_number_is_refused_in_a_sentence_with_its_name_itself_and_the_ra
 
 @pytest.mark.parametrize("name", [*PICKED, *SWITCHES])
 def test_unknown_options_and_half_switches_are_refused_with_all_the_known_ones(name):
-    for value in ("", "cube", "Plane", " plane", "plane,exp", "yes", "2", "-1", "none", 2):
+    for value in ("", "cube", "Plane", " plane", "plane,exp", "yes", "2", "-1", "nothing", 2):
         sentence = refused(name, value)
         assert sentence.startswith(f"{name} = {str(value)!r}: ")
         assert all(option in sentence for option in PICKED.get(name, ["1 or 0"]))
@@ -147,7 +147,7 @@ def test_each_wrong_name_or_value_has_a_sentence_of_its_own_and_the_good_ones_ar
     locked = changed(Choice(), theta=50, lock=True)[0]
     assert changed(locked, theta=180)[0] == changed(locked, theta0=180)[0] == locked
     choice, problems = changed(Choice(), theta=0, m="2.5", n="4", kind="cube", shade="1")
-    assert choice == Choice(n=4, shade=True)
+    assert choice == Choice(n=4, shade="deviation")  # an old link
     assert [p.split()[0] for p in problems] == ["theta", "m", "kind"]
 
 
@@ -465,7 +465,9 @@ def test_with_panels_to_the_edge_all_of_the_surface_and_every_side_once_is_drawn
     shade = np.full((len(Q), 3), 7, dtype=np.uint8)
     for one in (plan, look.layout(Q, len(V), FAMILIES, True, trimmed.cover)):
         rgb = look.fills(one, look.LIGHT, shade)
-        assert np.all(rgb[: -len(one.cut)] == 7) and np.all(rgb[-len(one.cut) :] == palette[1])
+        shaded = len(one.quads) or len(one.triangles)  # of all else the parallelograms stand out
+        assert np.all(rgb[:shaded] == 7) and np.all(rgb[shaded : -len(one.cut)] > 7)
+        assert np.all(rgb[-len(one.cut) :] == palette[1])
 
 
 def test_panels_to_the_edge_are_in_the_code_the_link_and_in_files(trimmed, tmp_path):
@@ -627,7 +629,8 @@ def test_the_numbers_agree_with_the_judge_and_with_the_corners(values):
     wanted = np.stack([theta - 70, theta0 - 55])
     assert np.allclose(found.deviations(), wanted, atol=1e-12)
     shades = look.shades(np.abs(wanted).max(axis=0)).astype(int)
-    assert np.abs(found.colours() - shades).max() <= 1
+    found.change(shade="deviation")
+    assert np.abs(found.shading()[0] - shades).max() <= 1
 
 
 def test_a_given_net_stays_whatever_is_chosen_and_is_judged_by_its_mean_angles():
@@ -688,7 +691,7 @@ def test_saved_drawings_are_xml_and_the_same_each_time(
 ):
     monkeypatch.setattr(look, "PIXELS", 200)  # quick
     drawn = set()
-    for shade in (False, True):
+    for shade in PICKED["shade"]:
         looks = {"families": families, "parallelograms": parallelograms, "shade": shade}
         data = built(map="inverse", m=4, n=3, **looks).save(".svg", 0.3, 0.5)
         assert ET.fromstring(data).tag.endswith("svg")
@@ -696,7 +699,7 @@ def test_saved_drawings_are_xml_and_the_same_each_time(
         for name, colour in plot.COLOURS.items():
             assert (colour.encode() in data) is (name in families)
         drawn.add(data)
-    assert len(drawn) == 2
+    assert len(drawn) == len(PICKED["shade"])
 
 
 def test_a_saved_picture_decodes_and_shows_the_net_in_the_middle(vase, scratch):
@@ -809,7 +812,9 @@ def test_every_cell_has_the_colour_of_the_face_it_is_cut_from_and_all_fill_it_on
     W = look.points(V, plan)
     middles = [W[cells].mean(axis=1) for cells in (plan.quads, plan.triangles) if len(cells)]
     square = np.floor(np.concatenate(middles))[:, :2]
-    assert np.array_equal(look.fills(plan, look.LIGHT, shade)[:, :2], square)
+    rgb = look.fills(plan, look.LIGHT, shade)
+    shaded = len(Q) if parallelograms else len(rgb)  # only they are shaded, then
+    assert np.array_equal(rgb[:shaded, :2], square[:shaded]) and np.all(rgb[shaded:] > 100)
     a, b, c = W[filled(plan, W)[1]].transpose(1, 0, 2)
     d1, d2 = V[Q[:, 2]] - V[Q[:, 0]], V[Q[:, 3]] - V[Q[:, 1]]
     area, whole = (np.cross(*pair)[:, 2] for pair in ((b - a, c - a), (d1, d2)))

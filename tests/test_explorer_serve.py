@@ -174,7 +174,7 @@ CHANGES = [
     {"kind": "isothermal", "surface": "rolled", "bend": 200},
     {"kind": "isothermal", "moebius": True, "pz": 2.5},
     {"kind": "revolution", "radii": [0.9, "1.1", 1.2, 1.1, 1, 1, 0.8]},
-    {"families": ["d2", "u"], "parallelograms": True, "shade": True},
+    {"families": ["d2", "u"], "parallelograms": True, "shade": "size"},
 ]
 
 
@@ -376,7 +376,7 @@ async def test_a_given_net_is_shown_and_never_changed(serve, run):
     async with opened(serve, "own", net=(V, Q)) as app:
         await arrived(app, "?families=d1,d2&kind=freeform&theta=20")
         assert app.state.numbers == texts(Session(net=(V, Q)))
-        await change(app, shade=True, m=9)
+        await change(app, shade="size", m=9)
         await until(lambda: app.scene.faces.n_cells == 4 * len(Q))
         app.run()
         await asyncio.sleep(0.05)

@@ -34,7 +34,7 @@ class App:
         self._task, self._search, self._remake = None, None, False
         self.state.trame__title = "Isogonal nets"
         self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
-        self.state.numbers = {}
+        self.state.numbers, self.state.legend = {}, []
         self._dress()
         self._echo()
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
@@ -188,7 +188,7 @@ class App:
         self._plates()
         if session.V is None:
             return
-        shade = session.colours() if session.choice.shade else None
+        shade, state.legend = session.shading()
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade, session.cover)
         self.view.update()
         if self.fitted is None:

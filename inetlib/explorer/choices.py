@@ -38,6 +38,12 @@ OPTIONS = {
         "ring": "Ring, closed around it",
         "fill": "Opening, curves go across",
     },
+    "shade": {
+        "none": "nothing",
+        "deviation": "deviation of the angles",
+        "size": "size",
+        "planarity": "planarity",
+    },
 }
 PROFILES = {
     "vase": (0.80, 1.02, 1.00, 0.72, 0.45, 0.48, 0.66),
@@ -80,6 +86,7 @@ ANGLE = Range(0, 180, 1, "\u00b0", open=True)
 BEND = Range(0, 90, 1, "\u00b0")
 BEND_ROLLED = BEND._replace(high=350)
 POLE, RADIUS = Range(-3, 3, 0.05), Range(0.05, 3, 0.01)
+SHADE_SWITCH = {True: "deviation", False: "none"}  # what links said at first
 SWITCH = {"1": True, "0": False, "true": True, "false": False}
 WORDS = {"px": "pole x", "py": "pole y", "pz": "pole z", "radii": "a radius of the profile"}
 
@@ -114,7 +121,7 @@ class Choice:
     trim: bool = _of(SWITCH, False)
     families: tuple = _of(FAMILIES, ("u", "v"))
     parallelograms: bool = _of(SWITCH, False)
-    shade: bool = _of(SWITCH, False)
+    shade: str = _of(OPTIONS["shade"], "none")
 
 
 ALLOWED = {f.name: f.metadata["allowed"] for f in fields(Choice)}
@@ -166,6 +173,8 @@ def _checked(name, value, surface):
             names = ", ".join(PROFILES)
             raise ValueError(f"radii: {len(HEIGHTS)} numbers, or one of {names}, are wanted")
         return tuple(_read(name, part, allowed) for part in parts)
+    if name == "shade":
+        value = SHADE_SWITCH.get(SWITCH.get(str(value).lower()), value)
     return _read(name, value, allowed)
 
 

@@ -9,9 +9,11 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from .. import plot, repair
+from .. import measure, plot, repair
 
-DECADES = -3, 1  # powers of ten of a degree: what the shading tells apart
+DECADES = -3, 1  # powers of ten of a degree: what the shading by deviation tells apart
+STEPS = 5  # of the other scales
+EQUAL = 1e-9  # of the scale: sizes, or planarities, that differ by less are equal
 PIXELS = 1200  # of the longer side of a net in a saved picture
 
 
@@ -35,8 +37,15 @@ def shades(off: np.ndarray) -> np.ndarray:
     """The colours of deviations (degrees) on a logarithmic scale from near white: bytes (k, 3)."""
     low, high = DECADES
     part = (np.log10(np.maximum(off, 1e-300)) - low) / (high - low)
-    rgb = matplotlib.colormaps["Purples"](np.clip(0.2 + 0.8 * part, 0.2, 1))[:, :3]
-    rgb[part < 0] = to_rgb("#f4f6f8")
+    rgb = _tones(part)
+    rgb[part < 0] = np.round(255 * np.array(to_rgb("#f4f6f8")))
+    return rgb
+
+
+def _tones(part):
+    """One hue, that of no family, from light to dark: bytes (k, 3) of parts from 0 to 1."""
+    part = np.clip(part, 0, 1)  # the darkest tones of the map would hide the curves
+    rgb = matplotlib.colormaps["Purples"](0.2 + 0.65 * part)[:, :3]
     return np.round(255 * rgb).astype(np.uint8)
 
 
@@ -45,8 +54,38 @@ def scale() -> list[tuple[str, str]]:
     powers = np.arange(DECADES[0] - 1, DECADES[1] + 1)
     words = [f"{10.0**p:g}\u00b0" for p in powers]
     words[0] = f"< {words[1]}"
-    colours = shades(10.0**powers)
+    return _legend(shades(10.0**powers), words)
+
+
+def _legend(colours, words):
     return [(f"rgb({r},{g},{b})", w) for (r, g, b), w in zip(colours.tolist(), words, strict=True)]
+
+
+def shading(name: str, V: np.ndarray, Q: np.ndarray, off: np.ndarray) -> tuple:
+    """What the faces are shaded by: RGB bytes (f, 3), and the scale as that of `scale`.
+
+    "deviation": off (f,), degrees; "size": the root of the area, in units of V; "planarity": the
+    distance of the diagonals over their mean length; "none": None, []."""
+    if name == "deviation":
+        return shades(off), scale()
+    if name == "size":
+        d1, d2 = measure.vectors(V, Q)[:2]
+        sizes = np.sqrt(np.linalg.norm(np.cross(d1, d2), axis=1) / 2)
+        return _graded(sizes, sizes.min(), EQUAL * sizes.max(), "")
+    if name == "planarity":
+        return _graded(100 * measure.planarity(V, Q), 0.0, 100 * EQUAL, " %")
+    return None, []
+
+
+def _graded(values, low, least, unit):
+    """As `shading`: values on a scale from low to the largest, if they differ by `least` at all."""
+    reach, digits = values.max() - low, 2 if unit else 3
+    if not reach > least:
+        tone = _tones(np.zeros(1))
+        return np.repeat(tone, len(values), axis=0), _legend(tone, [f"all {low:.{digits}g}{unit}"])
+    part = np.linspace(0, 1, STEPS)
+    words = [f"{x:.{digits}g}{unit}" for x in low + part * reach]
+    return _tones((values - low) / reach), _legend(_tones(part), words)
 
 
 def line_width(quads: int) -> int:
@@ -115,14 +154,15 @@ def points(V: np.ndarray, layout: Layout) -> np.ndarray:
 
 
 def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> np.ndarray:
-    """RGB bytes of all cells, in their order: (f + t + c, 3); shade: one colour a quad, or None."""
+    """RGB bytes of all cells, in their order: (f + t + c, 3).
+
+    shade: one colour a quad, or None; of inscribed parallelograms, where they are shown."""
     counts = [len(cells) for cells in (layout.quads, layout.triangles, layout.cut)]
     colours = palette.black if counts[0] and counts[1] else palette.face, palette.face, palette.cut
     rgb = np.round(255 * np.array([to_rgb(colour) for colour in colours])).astype(np.uint8)
     rgb = np.repeat(rgb, counts, axis=0)
     if shade is not None:
-        whole = np.concatenate([shade[: counts[0]], np.repeat(shade, 4, axis=0)[: counts[1]]])
-        rgb[: len(whole)] = whole
+        rgb[: counts[0] or counts[1]] = shade if counts[0] else np.repeat(shade, 4, axis=0)
     return rgb
 
 

@@ -10,7 +10,7 @@ from trame.widgets import vuetify3 as v3
 from trame.widgets.vtk import VtkLocalView
 
 from ..io import WITH_CURVES, missing
-from . import choices, look
+from . import choices
 from .session import SAVED
 
 FOLDER = files("inetlib.explorer")
@@ -35,13 +35,14 @@ SMALL = {"hide_details": True, "density": "compact"}
 FIELD = SMALL | {"variant": "outlined"}
 SWITCH = SMALL | {"color": "primary"}
 SLIDER = SWITCH | {"thumb_size": 15, "track_size": 3}
+SIZES = "square root of a face's area, in the units of the net"
+PLANARITY = "distance between the diagonals, in % of their mean length"
 SHOWN = {  # what can be shown of a net
     "u": "u-curves",
     "v": "v-curves",
     "d1": "diagonals d\u2081",
     "d2": "diagonals d\u2082",
     "parallelograms": "inscribed parallelograms",
-    "shade": "shade faces by their deviation",
 }
 
 
@@ -149,13 +150,17 @@ def _shown():
             colour = {"color": (f"colours.{name}",), "base_color": (f"colours.{name}",)}
             about = {"value": name, "label": SHOWN[name], "classes": f"in-{name}"}
             v3.VCheckbox(v_model=("families",), **about, **colour, **SMALL)
-    for name in ("parallelograms", "shade"):
-        v3.VCheckbox(v_model=(name,), label=SHOWN[name], classes=f"in-{name}", **SWITCH)
-    with html.Div(v_show="shade", classes="ex-scale"):
-        for colour, words in look.scale():
-            with html.Div():
-                html.I(style=f"background: {colour}")
-                html.Span(words)
+    name = "parallelograms"
+    v3.VCheckbox(v_model=(name,), label=SHOWN[name], classes=f"in-{name}", **SWITCH)
+    _select("shade", "shade faces by")
+    with (
+        html.Div(v_show="legend.length", classes="ex-scale out-legend"),
+        html.Div(v_for="(step, k) in legend", key="k"),
+    ):
+        html.I(style=("{ background: step[0] }",))
+        html.Span("{{ step[1] }}")
+    html.Div(SIZES, v_show="shade == 'size'", classes="ex-note")
+    html.Div(PLANARITY, v_show="shade == 'planarity'", classes="ex-note")
 
 
 def _numbers():

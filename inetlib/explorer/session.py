@@ -117,9 +117,10 @@ class Session:
         asked = np.array([[self.shown.theta], [self.shown.theta0]])
         return np.degrees(measure.angles(self.V, self.Q)) - asked
 
-    def colours(self):
-        """One RGB colour a face, by the larger deviation of its two angles; bytes (f, 3)."""
-        return look.shades(np.abs(self.deviations()).max(axis=0))
+    def shading(self):
+        """RGB bytes a face (f, 3), or None, and the legend: `look.shading` as chosen."""
+        off = np.abs(self.deviations()).max(axis=0)
+        return look.shading(self.choice.shade, self.V, self.Q, off)
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
@@ -137,8 +138,7 @@ class Session:
         if self.V is None:
             raise ValueError("there is no net to save")
         if suffix in (".svg", ".png"):
-            fill = self.colours() if self.choice.shade else None
-            camera = plot.camera(azimuth, elevation)
+            fill, camera = self.shading()[0], plot.camera(azimuth, elevation)
             return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:], self.cover)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
