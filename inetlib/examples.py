@@ -31,7 +31,7 @@ def saddle_with_hole(n: int = 20) -> tuple[np.ndarray, np.ndarray]:
 
 
 def hanging_shell(n: int = 30) -> tuple[np.ndarray, np.ndarray]:
-    """A cloth of n by n squares, a net of springs, that hangs from its corners, upside down."""
+    """A cloth that hangs from its corners, upside down: a net of springs, n by n squares."""
     from .solver import sparse  # slow to load
 
     n = check_whole("n", n, 2)

@@ -43,6 +43,10 @@ class Reference(NamedTuple):
         """Whether `boundary` may be asked."""
         return self.boundary is not no_boundary
 
+    def distances(self, points: np.ndarray) -> np.ndarray:
+        """Of points (k, 3) from the surface, in diagonals: (k,)."""
+        return np.linalg.norm(self.closest(points)[0] - points, axis=1) / self.diagonal
+
 
 def mesh(V: np.ndarray, F: np.ndarray) -> Reference:
     """The `Reference` of a mesh of triangles (f, 3) or quads (f, 4) with vertices V (n, 3).

@@ -210,7 +210,8 @@ def topology(T: np.ndarray) -> list:
     if len(sizes) > 1:
         some = ", ".join(map(str, sizes[:4])) + " ..." * (len(sizes) > 4)
         pieces = f"{len(sizes)} separate pieces (of {some} faces)"
-        raise ValueError(f"the surface has {pieces}: one is wanted, cover them one by one")
+        take = "--piece 1 or --largest of inet cover, repair.piece in Python"
+        raise ValueError(f"the surface has {pieces}: cover them one by one ({take})")
     loops = mesh.boundary_loops(T)
     euler = len(np.unique(T)) - (T.size + sum(map(len, loops))) // 2 + len(T)
     handles = (2 - len(loops) - euler) // 2

@@ -15,7 +15,7 @@ from .ending import ENDS, SIGNALS
 def main(arguments: list[str] | None = None) -> int:
     """`cli.main` for a process of its own: the exit code, or the end by a signal: 130."""
     words = sys.argv[1:] if arguments is None else arguments
-    quiet = words[:1] in (["figures"], ["explore"])
+    quiet = words[:1] in (["figures"], ["explore"], ["show"])
     listen(lambda: f"inet: stopped{', nothing was written' * (not quiet and not files.WRITTEN)}")
     from .cli import main as run
 

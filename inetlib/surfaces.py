@@ -185,7 +185,7 @@ def vase_profile(start: float = 0.0, stop: float = 3.2) -> Profile:
 
 
 def cone_profile(gamma: float, start: float = 0.2, stop: float = 2.0) -> Profile:
-    """A cone of half vertex angle gamma (radians) by the distance t from its vertex."""
+    """A cone by the distance t from its vertex; gamma: half the angle there (radians)."""
     if not 0 < gamma < np.pi / 2:
         raise ValueError(f"gamma = {gamma}: half the vertex angle lies between 0 and pi/2")
     return Profile(lambda t: t * np.sin(gamma), lambda t: t * np.cos(gamma), start, stop)

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+import shutil
 import subprocess
 import sys
 import types
@@ -12,6 +13,7 @@ import pytest
 from test_repair import sheet
 
 from inetlib import cli, examples, io, loxodrome, mesh, surfaces
+from inetlib.cli import completion, looks, project
 
 ANGLES = "--theta", "60", "--theta0", "45"
 
@@ -74,7 +76,7 @@ slow = {"igl", "matplotlib", "sympy", "vtkmodules", "pyvista", "scipy.interpolat
 open("old.obj", "w").write("precious")
 for row in sys.argv[1:]:
     code, words = cli.main(row.split()), slow & {*sys.modules}
-    if row.split()[0] == "--help":
+    if row in ("--help", ""):
         words |= {"numpy"} & {*sys.modules}
     print(f"{code} {row}: {words or 'nothing slow'}", file=sys.stderr)
 """
@@ -83,7 +85,7 @@ for row in sys.argv[1:]:
 def test_help_and_wrong_input_load_nothing_slow(tmp_path):
     """The first one not even NumPy: what was loaded stays so."""
     angles = "--theta 60 --theta0 45"
-    rows = ["--help", *(f"{name} --help" for name in cli.TEXTS)]
+    rows = ["--help", "", *(f"{name} --help" for name in cli.TEXTS)]
     wrong = [
         "measure none.obj",
         "measure old.obj",
@@ -96,6 +98,10 @@ def test_help_and_wrong_input_load_nothing_slow(tmp_path):
         "schedule none.obj -o a.csv",
         "schedule old.obj -o a.csv",
         "explore none.obj",
+        "explore --host 0.0.0.0",
+        "show none.obj",
+        "show roof -o a.obj",
+        "webb --profile vase",
         "figures fig99",
         "course grade none",
         "course grade . -o old.obj",
@@ -120,25 +126,144 @@ def test_every_help_text_shows_its_examples_and_they_run(inet, command):
         first, *words = shlex.split(line)
         assert first == "inet" and f"  {line}\n" in out
         if command == "figures":
-            assert all(cli.notebooks(cli.ROOT / "notebooks", name) for name in words[1:])
-        elif command != "explore":
+            found = [w for w in words[1:] if not w.startswith("-") and w != "."]
+            assert all(project.notebooks(project.ROOT / "notebooks", name) for name in found)
+        elif words[0] != "explore" and "--open" not in words:
             code, told, err = inet(*words)
             assert (code, err) == (0, "") and told, line
             assert "-o" not in words or Path(words[words.index("-o") + 1]).is_file()
 
 
-def test_the_first_help_text_shows_all_commands_and_examples_that_run(inet):
-    code, out, err = inet("--help")
-    assert (code, err) == (0, "")
-    for text, *_ in cli.TEXTS.values():
-        assert text[1:-1] in out
-    for line in [line.split() for line in out.splitlines() if line.startswith("  inet ")]:
-        assert inet(*line[1:])[0] == 0
+def test_the_overview_shows_all_commands_and_examples_that_run_in_this_order(inet):
+    code, out, err = inet()
+    assert (code, err) == (0, "") and inet("--help") == inet("help") == (code, out, err)
+    assert max(len(line) for line in out.splitlines()) <= 100
+    Path("submissions").mkdir()
+    Path("submissions", "a.ipynb").write_text('{"nbformat": 4, "cells": []}')
+    lines = [line.split()[1:] for line in out.splitlines() if line.startswith(" " * 13 + "inet ")]
+    assert sorted(line[0] for line in lines) == sorted(cli.COMMANDS) == sorted(cli.TEXTS)
+    for line in lines:
+        assert cli.TEXTS[line[0]][0] in out
+        assert line[0] in ("explore", "figures") or inet(*line)[0] == 0, line
+    assert inet("help", "web") == inet("web", "--help")
 
 
-@pytest.mark.parametrize("words", [[], ["nets"], ["measure"], ["web", "-o", "a.obj"]])
+@pytest.mark.parametrize("words", [["nets"], ["measure"], ["web", "-o", "a.obj"], ["--what"]])
 def test_what_is_missing_or_unknown_is_said_in_one_sentence(inet, words):
     assert refused(inet(*words), "--help")
+
+
+NEAREST = {
+    "mesure a.obj": "did you mean measure?",
+    "optimise a.obj": "did you mean optimize?",
+    "xyz": "there are examples, show,",
+    "cover roof --thta 60": "did you mean --theta?",
+    "cover roof --theta=60 --quad=9": "did you mean --quads?",
+    "web -q 3": "web has no option -q: ",
+    "--versoin": "did you mean --version?",
+    "explore --server": "without a browser anyway",
+    "explore --host 0.0.0.0": "always local",
+    "explore roof.obj --host=example.org": "only this machine",
+    "show a.obj --families u,w": "u, v, d1, d2, or none",
+    "show a.obj --view 3": "AZIMUTH,ELEVATION",
+    "show a.obj -o a.obj": ".png or .svg",
+}
+
+
+@pytest.mark.parametrize("line", NEAREST)
+def test_the_nearest_name_is_told(inet, line):
+    assert refused(inet(*line.split()), NEAREST[line])
+
+
+def test_a_value_that_begins_with_a_minus_sign_is_no_option(inet):
+    assert cli.joined(["--align", "-1,0,0", "-m", "-5", "a.obj", "--view=-5,3", "-.5"]) == [
+        "--align=-1,0,0", "-m", "-5", "a.obj", "--view=-5,3", "-.5"
+    ]  # fmt: skip
+    io.write("roof.obj", *examples.wavy_roof(9))
+    words = "--theta", 60, "--theta0", "60\u00b0", "--quads", 60, "--align", "-1,0,0", "-o", "a.obj"
+    found = numbers(inet("cover", "roof.obj", *words, "--json"))
+    assert found["wanted"]["theta0"] == pytest.approx(60)
+
+
+@pytest.mark.parametrize("module", ["inetlib", "inetlib.cli"])
+def test_the_package_is_the_command(module, tmp_path):
+    words = [sys.executable, "-m", module, "--version"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.startswith("inet 0.")
+
+
+def test_the_examples_are_those_that_the_commands_know(inet):
+    found = numbers(inet("examples", "--json"))
+    assert [*found["surfaces"]] == [*examples.SURFACES]
+    assert [*found["profiles"]] == [*surfaces.PROFILES]
+    assert {"square", "exp"} < {*found["explorer"]["map"]}
+    out = inet("examples")[1]
+    for group in ("surfaces", "profiles"):
+        for name, words in found[group].items():
+            assert f"  {name:16}{words}\n" in out and words[:2] in ("A ", "Th")
+
+
+def test_a_picture_of_a_net_or_a_surface_is_drawn_and_not_overwritten(inet, web):
+    V, Q, polygon = mesh.polygon_rings(5, 2)
+    io.write("five.obj", V, Q, polygons=[polygon])
+    for words in (["roof", "-o", "a.png"], [web, "-o", "a.svg", "--view", "-30,20"]):
+        code, out, err = inet("show", *words)
+        assert (code, err) == (0, "") and out.startswith(f"{words[2]}\n")
+        assert refused(inet("show", *words), "--force")
+    assert (
+        Path("a.png").read_bytes().startswith(b"\x89PNG") and b"<svg" in Path("a.svg").read_bytes()
+    )
+    first = Path("a.svg").read_bytes()
+    assert inet("show", web, "--families", "d1", "--parallelograms", "-o", "b.svg")[0] == 0
+    assert Path("b.svg").read_bytes() != first
+    found = numbers(inet("show", "five.obj", "-o", "a.png", "--force", "--json"))
+    assert (found["vertices"], found["faces"]) == (len(V), len(Q) + 1)
+    assert "no consistent u/v labelling" in found["notes"][0]
+
+
+TRY = """
+. ./inet.sh
+try() { COMP_WORDS=("$@"); COMP_CWORD=$(( $# - 1 )); _inet; printf '%s|' "${COMPREPLY[@]}"; echo; }
+"""
+TABS = {  # what is typed, and what may follow
+    "inet m": "measure|",
+    "inet web --prof": "--profile|",
+    "inet web --profile s": "sphere|some net.obj|",
+    "inet cover --openings ''": "fill|ring|",
+    "inet cover ro": "roof|",
+    "inet cover roof --th": "--theta|--theta0|--through|",
+    "inet cover roof --theta ''": "|",
+    "inet measure so": "some net.obj|",
+    "inet show roof -o so": "some net.obj|",
+    "inet explore --host l": "localhost|",
+    "inet completion ''": "bash|zsh|fish|",
+}
+
+
+@pytest.mark.skipif(not shutil.which("bash"), reason="there is no bash here")
+def test_bash_completes(inet):
+    code, out, err = inet("completion", "bash")
+    assert (code, err) == (0, "")
+    Path("inet.sh").write_text(out)
+    Path("some net.obj").touch()
+    script = TRY + "\n".join(f"try {line}" for line in TABS)
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True)
+    assert (done.stdout.splitlines(), done.stderr) == ([*TABS.values()], "")
+
+
+@pytest.mark.parametrize("shell", completion.SHELLS)
+def test_all_commands_and_options_are_in_the_script_of_each_shell(inet, shell):
+    code, out, err = inet("completion", shell)
+    assert (code, err) == (0, "")
+    for name, command in cli.parsers([*cli.TEXTS])[1].items():
+        there = [line for line in out.splitlines() if name in line]
+        for option in completion.options(command):
+            word = (
+                option
+                if shell != "fish"
+                else f" {'-l' if '--' in option else '-s'} {option.lstrip('-')} "
+            )
+            assert any(word in line for line in there), (name, option)
 
 
 def test_measure_prints_the_angles_and_json_the_same(inet, web):
@@ -319,12 +444,16 @@ def test_a_net_that_is_off_is_kept_only_when_asked_for(inet, web):
 
 
 def test_figures_needs_a_clone_and_names_that_are_there(inet, monkeypatch, tmp_path):
-    folder = cli.ROOT / "notebooks"
-    assert cli.notebooks(folder, "fig03") == ["3_3_conformal_grids"]
-    assert cli.notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
-    assert refused(inet("figures", "fig99"), "fig99")
-    monkeypatch.setattr(cli, "ROOT", tmp_path)
-    assert refused(inet("figures"), "clone")
+    folder = project.ROOT / "notebooks"
+    assert project.notebooks(folder, "fig03") == ["3_3_conformal_grids"]
+    assert project.notebooks(folder, "5_") == sorted(p.stem for p in folder.glob("5_*.ipynb"))
+    assert refused(inet("figures", "--folder", project.ROOT, "fig99"), "fig99")
+    assert refused(inet("figures"), f"{tmp_path} is no clone")
+    assert refused(inet("figures", "--folder", "none"), "--folder")
+    for name in ("tools", "notebooks"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "tools" / "redraw.py").touch()
+    assert refused(inet("figures"), f"is of {project.ROOT}")
 
 
 def test_surfaces_are_repaired_and_it_is_said_or_refused(inet):
@@ -381,24 +510,32 @@ def test_whatever_goes_wrong_is_one_sentence_and_nothing_is_written(
     assert not any(Path().iterdir())
 
 
-def test_explore_serves_a_sound_surface_and_tells_the_address(inet, monkeypatch):
+def test_explore_and_show_serve_what_is_sound_and_tell_the_address(inet, web, monkeypatch):
     served, shown = [], []
 
-    def serve(surface, path, port, ready):
-        served.append((surface, path, port))
+    def serve(surface, path, port, ready, net=None):
+        served.append((surface, path, port, net))
         ready("http://127.0.0.1:8123/")
 
     module = types.SimpleNamespace(serve=serve)
     monkeypatch.setattr("inetlib.explorer.notebook.server", lambda: module)
-    monkeypatch.setattr(cli.webbrowser, "open", shown.append)
+    monkeypatch.setattr(looks.webbrowser, "open", shown.append)
     V, F = examples.wavy_roof(15)
     io.write("roof.obj", V, F)
     said = "Isogonal nets: http://127.0.0.1:8123/ (Ctrl-C ends it)\n"
-    assert inet("explore") == (0, said, "") and served.pop() == (None, None, None) and not shown
-    assert inet("explore", "roof.obj", "--port", 8123, "--open") == (0, said, "")
-    (surface, *more) = served.pop()
-    assert np.array_equal(surface.V, V) and more == ["roof.obj", 8123]
-    assert shown == ["http://127.0.0.1:8123/"]
+    assert inet("explore") == (0, said, "") and served.pop() == (None, None, None, None)
+    assert inet("explore", "--host", "localhost") == (0, said, "") and served.pop() and not shown
+    for command in ("explore", "show"):
+        assert inet(command, "roof.obj", "--port", 8123, "--open") == (0, said, "")
+        surface, *more = served.pop()
+        assert np.array_equal(surface.V, V) and more == ["roof.obj", 8123, None]
+        assert shown.pop() == "http://127.0.0.1:8123/"
+        out = numbers(inet(command, "skylight", "--json"))
+        assert out["address"].endswith("/?kind=cover&source=skylight")
+        assert served.pop() == (None, None, None, None)
+    assert inet("show", web) == (0, said, "")
+    (*none, net) = served.pop()
+    assert none == [None, "web.obj", None] and np.array_equal(net[1], io.net(web).Q)
     io.write("two.obj", np.concatenate([V, V + 9]), np.concatenate([F, F + len(V)]))
     assert refused(inet("explore", "two.obj"), "separate pieces") and not served
 
@@ -407,27 +544,35 @@ FAKE = """
 import sys
 def tqdm(**options):
     return options
+drawn = {}
+def stamps():
+    return dict(drawn)
 def main(names):
+    drawn["fig01"] = 1
     print(names, tqdm(total=3))
     return 0
 """
 
 
-def test_figures_runs_each_notebook_once_and_quietly_on_request(inet, monkeypatch, tmp_path):
+def test_figures_runs_each_notebook_once_and_names_its_target(inet, monkeypatch, tmp_path):
     (tmp_path / "tools").mkdir()
     (tmp_path / "tools" / "redraw.py").write_text(FAKE)
     (tmp_path / "notebooks").mkdir()
     for name, tags in (("1_one", ["fig01", "fig02"]), ("2_two", [])):
         notebook = {"cells": [{"metadata": {"tags": tags}}, {"metadata": {}}]}
         (tmp_path / "notebooks" / f"{name}.ipynb").write_text(json.dumps(notebook))
-    monkeypatch.setattr(cli, "ROOT", tmp_path)
+    monkeypatch.setattr(project, "ROOT", tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
     for words, names in ((["2", "fig02", "1"], ["2_two", "1_one"]), ([], [])):
-        for quiet in (False, True):
+        for how in ("", "--quiet", "--json"):
             monkeypatch.delitem(sys.modules, "redraw", raising=False)
-            code, out, err = inet("figures", *words, *["--quiet"] * quiet)
+            code, out, err = inet("figures", *words, *[how] * bool(how))
             assert (code, err) == (0, "")
-            assert out == ("" if quiet else f"{names} {{'disable': True, 'total': 3}}\n")
+            said = ", ".join(names) or "all notebooks"
+            text = f"redraws {said} in {tmp_path}\n{names} {{'disable': True, 'total': 3}}\n"
+            assert how == "--json" or out == ("" if how else text)
+            known = {"folder": str(tmp_path), "notebooks": names, "written": ["fig01"]}
+            assert how != "--json" or json.loads(out) == known
     monkeypatch.delitem(sys.modules, "redraw")
 
 

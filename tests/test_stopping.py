@@ -34,7 +34,8 @@ sys.addaudithook(hook)
 """
 PUT = """
 import signal, sys
-from inetlib import cli, design
+from inetlib import design
+from inetlib.cli import nets
 {} = lambda *_, **also: signal.raise_signal(signal.SIGINT)
 """
 RUN = "from inetlib.start import main; sys.exit(main(sys.argv[1:]))"
@@ -145,7 +146,7 @@ MOMENTS = {
     "while packages are loaded": ON.format("import", "scipy.sparse"),
     "in the search": PUT.format("design.cover"),
     "while the file is written": ON.format("open", ".new-"),
-    "when it is written": PUT.format("cli._say"),
+    "when it is written": PUT.format("nets._say"),
 }
 
 

@@ -201,7 +201,7 @@ def _faults(result, Q, area, goal):
     folded = not 1 / GROWN < area_of(result.V, Q) / area < GROWN
     if not result.converged:
         return folded, True, _deviation(result)
-    off = np.linalg.norm(goal.closest(result.V)[0] - result.V, axis=1).max() / goal.diagonal
+    off = goal.distances(result.V).max()
     return folded, False, off
 
 

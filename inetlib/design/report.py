@@ -106,7 +106,7 @@ def survey(
 ) -> Report:
     """The `Report` of the net V, Q and its cut panels over the `Reference` goal, flattened to
     the `Flat` flat."""
-    there = np.linalg.norm(goal.closest(V)[0] - V, axis=1) / goal.diagonal
+    there = goal.distances(V)
     net, fans = report(V, Q, polygons, theta=theta, theta0=theta0), [mesh.triangles(V, Q)[1]]
     fans += [np.stack([np.full(len(p) - 2, p[0]), p[1:-1], p[2:]], axis=1) for p in polygons]
     T = np.concatenate(fans)
@@ -210,10 +210,14 @@ def text(report: Report) -> str:
         f"most, planarity {r.planarity:.3g}"
     )
     lines.append(_sizes(r))
-    if r.converged is not None:
+    if r.distance_mean is not None:
         lines += [
             f"distance to the surface {100 * r.distance_mean:.2g} % of its diagonal on average, "
-            f"{100 * r.distance_max:.2g} % at most; back from it {100 * r.back_max:.2g} % at most",
+            f"{100 * r.distance_max:.2g} % at most"
+        ]
+    if r.converged is not None:
+        lines[-1] += f"; back from it {100 * r.back_max:.2g} % at most"
+        lines += [
             f"{100 * r.covered:.0f} % of the surface is covered; edges {r.edge_low:.3g} to "
             f"{r.edge_high:.3g}, mean {r.edge_mean:.3g}",
             f"conformal map: distortion {r.distortion_mean:.3f} on average, "

@@ -177,6 +177,11 @@ def picture(V, Q, choice, shade, camera, form, cover=None) -> bytes:
     fill = fills(plan, LIGHT, shade) / 255
     width, named = 0.6 * line_width(len(Q)), plan.lines.items()
     lines = [(W[pair], LIGHT.families[name], width) for name, pairs in named for pair in pairs]
+    return drawn([(W, faces, fill)], lines, camera, form)
+
+
+def drawn(layers, lines, camera, form) -> bytes:
+    """Surfaces and curves on them, as of `plot.scene`, as the bytes of a picture."""
     file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
     with matplotlib.rc_context():
         plot.use_style()
@@ -184,6 +189,6 @@ def picture(V, Q, choice, shade, camera, form, cover=None) -> bytes:
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
-        plot.scene(ax, camera, [(W, faces, fill)], lines, PIXELS)
+        plot.scene(ax, camera, layers, lines, PIXELS)
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()

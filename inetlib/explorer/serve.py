@@ -144,19 +144,23 @@ async def _up(request):
     raise web.HTTPFound("../" * (rest.count("/") + 2) + rest)
 
 
-def serve(surface=None, path=None, port: int | None = None, ready: Callable = print) -> None:
+def serve(
+    surface=None, path=None, port: int | None = None, ready: Callable = print, net=None
+) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
-    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`."""
+    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`; net: V, Q
+    of a net that is given, to be shown instead."""
 
     async def run():
         door, end = Door(surface, path), asyncio.Event()
+        door.nets |= {"file": net} if net else {}
         await door.open(port)
         for number in (signal.SIGINT, signal.SIGTERM):
             with suppress(NotImplementedError):  # on Windows Ctrl-C is a KeyboardInterrupt
                 asyncio.get_running_loop().add_signal_handler(number, end.set)
         try:
-            ready(f"http://{HOST}:{door.port}/")
+            ready(f"http://{HOST}:{door.port}/" + "net/file/index.html" * bool(net))
             await end.wait()
         finally:
             await door.close()

@@ -35,7 +35,7 @@ class Session:
             V, Q = mesh.check_arrays(*net)
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0)
-            words = "a net from Python; deviations are from its mean angles"
+            words = f"{path or 'a net from Python'}; deviations are from its mean angles"
             self._settle(None, None, lambda _: (V, Q, words, None))
             if self.problem:
                 raise ValueError(self.problem)
@@ -124,6 +124,8 @@ class Session:
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""
+        if self.given and self.path:
+            return f"from inetlib import io\n\nV, Q, others = io.net({str(self.path)!r})"
         if self.given:
             return "# this net came from Python: V, Q"
         return nets.code(self.choice, self.path or "surface.obj")

@@ -1,0 +1,8 @@
+"""python -m inetlib.cli: the same as `inet`."""
+
+import sys
+
+from inetlib.start import main
+
+if __name__ == "__main__":
+    sys.exit(main())
