@@ -29,7 +29,9 @@ def start(*words, folder, environment):
         command, stdout=subprocess.PIPE, text=True, cwd=folder, env=environment
     )
     line = process.stdout.readline()
-    found = re.fullmatch(r"Isogonal nets: (http://127\.0\.0\.1:\d+/) \(Ctrl-C ends it\)\n", line)
+    found = re.fullmatch(
+        r"Isogonal nets: (http://127\.0\.0\.1:\d+/[\w-]{22}/) \(Ctrl-C ends it\)\n", line
+    )
     assert found, line
     return process, found[1]
 

@@ -53,7 +53,7 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
     if not (person() if live is None else live):
         return _still(picture, width=640)
-    address = f"{_address(_open_door().port)}index.html?{choices.link(session.choice)}"
+    address = f"{_address(_open_door())}index.html?{choices.link(session.choice)}"
     return Live(address, picture, height)
 
 
@@ -87,7 +87,7 @@ def turn(
     _change(session, families=[name for name, lines in drawn._asdict().items() if len(lines)])
     door.nets[key] = session.V, session.Q
     query = "families=" + ",".join(session.choice.families)
-    address = f"{_address(door.port)}net/{key}/index.html?{query}"
+    address = f"{_address(door)}net/{key}/index.html?{query}"
     return Live(address, picture or session.save(".png", *view), height=480)
 
 
@@ -117,10 +117,10 @@ def person() -> bool:
     return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
 
 
-def _address(port):
-    """Where the browser of a notebook finds a port of this machine."""
+def _address(door):
+    """Where the browser of a notebook finds the door."""
     hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
-    return f"{hub}proxy/{port}/" if hub else f"http://127.0.0.1:{port}/"
+    return f"{hub}proxy/{door.port}/{door.token}/" if hub else door.root
 
 
 def server() -> Any:
@@ -138,7 +138,7 @@ def _open_door():
     with _lock:
         if _door is None:
             guarded = "JUPYTERHUB_SERVICE_PREFIX" not in os.environ  # the hub is a guard itself
-            door, loop = server().Door(guarded=guarded), asyncio.new_event_loop()
+            door, loop = server().Door(guarded=guarded, framed=True), asyncio.new_event_loop()
             threading.Thread(target=loop.run_forever, daemon=True).start()
             asyncio.run_coroutine_threadsafe(door.open(0), loop).result(60)
             _door = door

@@ -20,19 +20,29 @@ class Scene:
         pyvista = view.pyvista_module()
         self.plotter = pyvista.Plotter(off_screen=True, lighting=None)
         self.plotter.add_light(pyvista.Light(light_type="headlight"))
-        corner = np.eye(3)
-        self.faces = pyvista.PolyData(corner, faces=[3, 0, 1, 2])
-        self.curves = pyvista.PolyData(corner, lines=[2, 0, 1])
-        for data in (self.faces, self.curves):
-            data.cell_data["rgb"] = np.zeros((1, 3), dtype=np.uint8)
+        self.faces, self.curves = pyvista.PolyData(), pyvista.PolyData()
+        self.clear()
         colours = {"scalars": "rgb", "rgb": True}
         solid = self.plotter.add_mesh(self.faces, ambient=0.35, diffuse=0.7, **colours)
         solid.mapper.SetResolveCoincidentTopologyToPolygonOffset()  # curves lie in front
+        # Never hidden: what a browser has not seen yet would get other colours there.
         self.actor = self.plotter.add_mesh(self.curves, lighting=False, **colours)
         for actor in (solid, self.actor):  # no table of colours need travel
             actor.mapper.lookup_table = pyvista.LookupTable(n_values=2)
+
+    def clear(self):
+        """Hold nothing that can be seen: one point."""
         self._known = self._layout = None
         self.origin = np.zeros(3)  # of the scene: float32 has no digits to spare far away
+        self.faces.points = self.curves.points = np.zeros((1, 3), np.float32)
+        self._cells([3, 0, 0, 0], [2, 0, 0], *np.zeros((2, 1, 3), np.uint8))
+
+    def _cells(self, faces, lines, fills, rgb):
+        """Take new cells and their colours; the old colours do not fit them."""
+        self.faces.cell_data.clear()
+        self.curves.cell_data.clear()
+        self.faces.faces, self.curves.lines = faces, lines
+        self.faces.cell_data["rgb"], self.curves.cell_data["rgb"] = fills, np.uint8(rgb)
 
     def show(self, V, Q, choice, dark=False, shade=None, cover=None):
         """Put a net into the scene; shade: RGB bytes a quad, (f, 3), or None; cover: of `look`."""
@@ -47,21 +57,18 @@ class Scene:
         plan = self._layout
         points = np.asarray(V - self.origin, np.float32)
         self.faces.points = self.curves.points = look.points(points, plan)
-        if new:  # cells: the old colours do not fit them
-            self.faces.cell_data.clear()
-            self.curves.cell_data.clear()
+        fills = look.fills(plan, palette, shade)
+        if new:
             cells = plan.quads, plan.triangles, plan.cut
-            self.faces.faces = np.concatenate([*map(_counted, cells)])
             lines = plan.lines or {"none": np.zeros((1, 2), dtype=np.int64)}
-            self.curves.lines = _counted(np.concatenate(list(lines.values())))
             colours = [to_rgb(palette.families.get(name, palette.face)) for name in lines]
             rgb = np.repeat(np.round(255 * np.array(colours)), [*map(len, lines.values())], axis=0)
-            self.curves.cell_data["rgb"] = rgb.astype(np.uint8)
-            self.actor.visibility = bool(plan.lines)
+            pairs = _counted(np.concatenate(list(lines.values())))
+            self._cells(np.concatenate([*map(_counted, cells)]), pairs, fills, rgb)
             self.actor.prop.line_width = look.line_width(len(Q))
-        if new or shade is not None:
-            self.faces.cell_data["rgb"] = look.fills(plan, palette, shade)
             self.plotter.set_background(palette.background)
+        elif shade is not None:
+            self.faces.cell_data["rgb"] = fills
 
     def camera(self, V, azimuth, elevation, aspect=1.0):
         """The camera (for vtk.js) that sees all of V, angles in degrees, aspect: width / height."""
@@ -101,5 +108,5 @@ def borrow() -> Scene:
 
 def give_back(scene: Scene) -> None:
     """Keep a borrowed scene for the next tab."""
-    scene._known = None
+    scene.clear()
     _free.append(scene)

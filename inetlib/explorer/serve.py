@@ -1,8 +1,9 @@
 """The way in: one local address, and for every browser tab an `app.App` of its own.
 
-Only this machine can connect, and only pages from this address."""
+Only this machine can connect, only who knows the token in the address, and only its own pages."""
 
 import asyncio
+import gc
 import os
 import secrets
 import signal
@@ -20,6 +21,11 @@ HOST = "127.0.0.1"
 PORT, MORE = 8765, 30  # the port, and how many further ones are tried when it is taken
 LOCAL = {"127.0.0.1", "localhost"}
 MESSAGE = 2**24  # bytes, at most, from a browser
+SWEEP = 0.5  # seconds after a tab was closed: then what is left of it is collected
+STRANGER = (
+    "this address is of no explorer that runs now: open the one that was printed last, "
+    "or run the cell of the notebook again; what follows the ? may be put behind it"
+)
 os.environ.setdefault("TRAME_ARGS", "--server")  # trame must not read our command line
 
 
@@ -27,13 +33,27 @@ class Door:
     """A web server on the loopback interface: an app for every tab.
 
     surface, path: as of `Session`; nets: {key: (V, Q)} of nets that are given, each at the address
-    net/KEY/index.html; guarded: whether requests for other hosts and from other sites are refused.
+    net/KEY/index.html; guarded: whether requests for other hosts and from other sites are refused;
+    framed: whether pages of other sites, such as notebooks, may show it in a frame.  All addresses
+    begin with the token, which is new for every door: see `root`.
     """
 
-    def __init__(self, surface=None, path=None, guarded=True):
+    def __init__(self, surface=None, path=None, guarded=True, framed=False):
         self.options = {"surface": surface, "path": path}
-        self.guarded, self.port, self.nets, self.tabs = guarded, None, {}, set()
-        self._runner = self._www = None
+        self.guarded, self.framed, self.port, self.nets, self.tabs = (
+            guarded,
+            framed,
+            None,
+            {},
+            set(),
+        )
+        self.token = secrets.token_urlsafe(16)
+        self._runner = self._www = self._sweep = None
+
+    @property
+    def root(self):
+        """The address of the explorer, where the door is open."""
+        return f"http://{HOST}:{self.port}/{self.token}/"
 
     async def open(self, port=None):
         """Listen: the port, or OSError.  None: the usual one, or the next that is free; 0: any."""
@@ -43,16 +63,19 @@ class Door:
         self._www = Path(pages.server._www)
         folders = {k: x if isinstance(x, str) else x[0] for k, x in pages.server.serve.items()}
         pages.close()
+        top = f"/{self.token}"
         routes = [
-            web.get("/", self._index),
-            web.get("/ws", self._tab),
-            web.get("/net/{key}/ws", self._tab),
-            web.get("/net/{key}/index.html", self._net),
-            web.get("/net/{key}/{rest:.+}", _up),
-            *(web.static(f"/{name}", folder) for name, folder in folders.items()),
-            web.static("/", self._www),
+            web.get(f"{top}/", self._index),
+            web.get(f"{top}/ws", self._tab),
+            web.get(f"{top}/net/{{key}}/ws", self._tab),
+            web.get(f"{top}/net/{{key}}/index.html", self._net),
+            web.get(f"{top}/net/{{key}}/{{rest:.+}}", _up),
+            *(web.static(f"{top}/{name}", folder) for name, folder in folders.items()),
+            web.static(top, self._www),
         ]
         application.add_routes(routes)
+        if not self.framed:
+            application.on_response_prepare.append(_unframed)
         self._runner = web.AppRunner(application, access_log=None, shutdown_timeout=2)
         await self._runner.setup()
         for candidate in [port] if port is not None else [*range(PORT, PORT + MORE), 0]:
@@ -90,16 +113,19 @@ class Door:
 
     @web.middleware
     async def _guard(self, request, handler):
-        """Refuse other hosts (rebound names) and other sites (their scripts)."""
-        if not self.guarded:
-            return await handler(request)
+        """Refuse other hosts (rebound names), other sites (their scripts), and other tokens."""
         origin = request.headers.get("Origin", f"http://{request.host}")
         try:
             site, host = urlsplit(origin).netloc, urlsplit(f"//{request.host}").hostname
         except ValueError:
             site = host = None
-        if host not in LOCAL or site != request.host:
+        if self.guarded and (host not in LOCAL or site != request.host):
             raise web.HTTPForbidden(text="only pages of this address are served, on this machine")
+        if request.path == "/favicon.ico":  # browsers ask for it at the top
+            return web.Response(status=204)
+        token = request.path.split("/")[1].encode()
+        if not secrets.compare_digest(token, self.token.encode()):
+            raise web.HTTPForbidden(text=STRANGER)
         return await handler(request)
 
     async def _tab(self, request):
@@ -115,6 +141,10 @@ class Door:
         finally:
             self.tabs.discard(entry)
             app.close()
+            if self._sweep is not None:
+                self._sweep.cancel()
+            # Apps and servers know each other: only the collector finds them.
+            self._sweep = asyncio.get_running_loop().call_later(SWEEP, gc.collect)
         return socket
 
 
@@ -122,7 +152,14 @@ async def _talk(server, socket):
     """Run a trame server for one browser, until it goes away."""
     task = server.start(backend="generic", exec_mode="task")
     await server.ready
-    connection = await server._server.ws.connect()
+    endpoint = server._server.ws
+    refuse = endpoint.sendWrappedError
+
+    async def briefly(number, code, message, data=None, client_id=None):
+        await refuse(number, code, message, None, client_id)  # without traces and their paths
+
+    endpoint.sendWrappedError = briefly
+    connection = await endpoint.connect()
 
     async def forward(binary, content):
         if not socket.closed:
@@ -136,6 +173,11 @@ async def _talk(server, socket):
         await connection.close()
         await server.stop()
         await task
+
+
+async def _unframed(request, response):
+    """Other sites show no page in a frame, where a person could be led to click."""
+    response.headers["Content-Security-Policy"] = "frame-ancestors 'self'"
 
 
 async def _up(request):
@@ -160,7 +202,7 @@ def serve(
             with suppress(NotImplementedError):  # on Windows Ctrl-C is a KeyboardInterrupt
                 asyncio.get_running_loop().add_signal_handler(number, end.set)
         try:
-            ready(f"http://{HOST}:{door.port}/" + "net/file/index.html" * bool(net))
+            ready(door.root + "net/file/index.html" * bool(net))
             await end.wait()
         finally:
             await door.close()
