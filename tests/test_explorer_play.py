@@ -1,10 +1,15 @@
 """What one does with a net in the explorer, without its page: shading, undo, touching, remedies."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from inetlib import measure, mesh
-from inetlib.explorer import look
+from inetlib.explorer import look, plates, probe
+from inetlib.explorer.choices import Choice
+from inetlib.explorer.history import MOST, History
 from inetlib.explorer.session import Session
 
 
@@ -60,3 +65,75 @@ def test_a_shaded_session_has_the_legend_of_its_choice_and_none_without():
         rgb, legend = built(kind="isothermal", m=5, n=4, shade=name).shading()
         assert rgb.shape == (20, 3) and legend[-1][1].endswith(ending), name
     assert built(m=5, n=4).shading() == (None, [])
+
+
+def camera(azimuth, elevation, scale=1.0, middle=(0.0, 0, 0)):
+    """As vtk.js has it, looking at a point; the radians are those of `plot.camera`."""
+    a, e = azimuth, elevation
+    near = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    up = [-np.sin(e) * np.cos(a), -np.sin(e) * np.sin(a), np.cos(e)]
+    place = {"focalPoint": list(middle), "position": (middle + 5 * near).tolist()}
+    return place | {"viewUp": up, "parallelScale": scale}
+
+
+def test_the_face_that_is_hit_is_the_one_that_a_ray_meets_first():
+    net = built(kind="isothermal", surface="sphere", m=9, n=8, theta0=80)
+    V, Q = net.V, net.Q
+    a, b, c = V[Q[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)].transpose(1, 0, 2)
+    rng, hits = np.random.default_rng(3), 0
+    for azimuth, elevation in ((0.3, 0.2), (2, -1), (-1.2, np.pi / 2)):
+        sight = camera(azimuth, elevation, 1.5, [0.1, 0.2, 0])
+        back = np.subtract(sight["focalPoint"], sight["position"])
+        right = np.cross(back, sight["viewUp"])
+        for x, y in rng.uniform(-1, 1, (20, 2)):
+            aside = 1.5 * x * right / np.linalg.norm(right) + 1.5 * y * np.array(sight["viewUp"])
+            rays = np.stack([b - a, c - a, np.broadcast_to(-back, a.shape)], axis=2)
+            s, t, far = np.linalg.solve(rays, (sight["position"] + aside - a)[..., None])[..., 0].T
+            met = np.flatnonzero((s >= 0) & (t >= 0) & (s + t <= 1))
+            wanted = met[np.argmin(far[met])] // 2 if len(met) else None
+            assert probe.hit(V, Q, sight, x, y) == wanted
+            hits += wanted is not None
+    assert 10 < hits < 50
+    assert probe.hit(V, Q, sight, 40, 0) is None
+    aside = camera(0.3, 0.2, 1, [9, 0, 0])
+    assert probe.hit(V, Q, aside, 0, 0) is None and 0 <= probe.middle(V, Q, aside) < len(Q)
+
+
+def test_a_face_is_told_by_its_own_angles_and_drawn_with_them():
+    net = built(kind="plane", map="inverse", m=6, n=5, theta=70, theta0=50)
+    theta, theta0 = np.degrees(measure.angles(net.V, net.Q))
+    told = probe.about(net.V, net.Q, 7, (70, 50))
+    assert told["name"] == "Face 8"
+    assert (told["theta"], told["theta0"]) == (f"{theta[7]:.6f}", f"{theta0[7]:.6f}")
+    off = float(told["theta_off"].replace("\u2212", "-"))
+    assert off == pytest.approx(theta[7] - 70, rel=0.06) and told["theta_off"][0] in "+\u2212"
+    picture = plates.face(net.V[net.Q[7]])
+    lines = {name: [] for name in ("d1", "d2", "u", "v")}
+    for name, *ends in re.findall(
+        r'<line class="(\w+)" [^>]*x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)"', picture
+    ):
+        x1, y1, x2, y2 = map(float, ends)
+        lines[name].append(complex(x2 - x1, y1 - y2))
+    assert [len(lines[name]) for name in lines] == [2, 2, 3, 3]  # quad, sides, medial lines
+    between = np.degrees(np.angle(lines["d2"][0] / lines["d1"][0]))
+    assert between == pytest.approx(theta[7], abs=1)
+    wide = max(abs(x) for x in lines["u"])
+    assert wide > 30 and all(abs(x) < 300 for x in lines["u"])
+
+
+def test_undo_and_redo_go_through_the_choices_and_a_drag_is_one():
+    first = Choice()
+    past = History(first)
+    assert past.undo() == past.redo() == first
+    for k in range(5):
+        past.take(replace(first, theta=61.0 + k), 10 + 0.1 * k)
+    past.take(replace(first, theta=65.0, m=7), 10.5)
+    past.take(replace(first, theta=65.0, m=8), 19.0)  # after a rest
+    assert [past.undo().m for _ in range(2)] == [7, first.m]
+    assert past.undo() == past.undo() == first
+    assert past.redo() == replace(first, theta=65.0) and past.redo().m == 7
+    past.take(replace(first, theta=90.0), 30.0)
+    assert past.redo().theta == 90 and not past.next and past.undo().m == 7
+    for k in range(300):
+        past.take(replace(first, theta=1.0 + k % 2), 100.0 + 10 * k)
+    assert len(past.past) == MOST

@@ -4,13 +4,14 @@ import asyncio
 import time
 import traceback
 from functools import partial
-from math import atan2, hypot, radians
+from math import atan2, hypot
 
 from trame.app import get_server
 from trame.app.core import AVAILABLE_SERVERS
 from trame_vtk.modules import vtk as vtk_module
 
 from . import choices, look, page, plates, scene
+from .play import Play
 from .session import Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
@@ -37,6 +38,7 @@ class App:
         self.state.numbers, self.state.legend = {}, []
         self._dress()
         self._echo()
+        self.play = Play(self)
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
@@ -78,6 +80,7 @@ class App:
         self._dress()
         self.session.choice, problems = choices.parse(str(query), self.session.choice)
         self._echo(problems)
+        self.play.begin()
         self._soon(True)
 
     def _changed(self, **_):
@@ -86,9 +89,15 @@ class App:
         if values:
             self._echo(self.session.change(**values))
         if self.session.choice != before:
-            if NEW_PLACE & set(values):
-                self.sight = self.fitted = None
-            self._soon(not set(values) <= set(choices.SHOWN))
+            self.play.changed()
+            self.follow(set(values))
+
+    def follow(self, names):
+        """Show the net of the choice, in which the values of these names are new."""
+        self._echo()
+        if NEW_PLACE & names:
+            self.sight = self.fitted = None
+        self._soon(not names <= set(choices.SHOWN))
 
     def run(self):
         """Begin the search again."""
@@ -198,11 +207,11 @@ class App:
         state.numbers = plates.numbers(session.report, session.V, session.Q)
         asked = session.shown.theta, session.shown.theta0
         state.histogram_svg = plates.histograms(session.deviations(), asked)
+        self.play.show()
 
     def _plates(self):
         choice, state = self.session.choice, self.state
-        angles = radians(choice.theta), radians(choice.theta0)
-        state.parallelogram_svg = plates.parallelogram(*angles)
+        state.parallelogram_svg = plates.parallelogram(*self.session.angles)
         state.profile_svg = plates.profile(choice.radii)
         state.code, state.link = self.session.code(), choices.link(choice)
         state.has_one_hole = self.session.has_one_hole

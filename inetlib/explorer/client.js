@@ -62,6 +62,7 @@ window.inet = {
     if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
   },
   arrive() {
+    this.listen();
     const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
     window.trame.trigger("arrive", [window.location.search, dark, this.place()]);
   },

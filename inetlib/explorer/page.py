@@ -10,7 +10,7 @@ from trame.widgets import vuetify3 as v3
 from trame.widgets.vtk import VtkLocalView
 
 from ..io import WITH_CURVES, missing
-from . import choices
+from . import choices, widgets
 from .session import SAVED
 
 FOLDER = files("inetlib.explorer")
@@ -23,6 +23,9 @@ HELP = {
     "or pinch to zoom.",
     "Keyboard": "Tab reaches every control. On a slider the arrow keys change the value; on the "
     "view they turn it, + and - zoom, F fits the net.",
+    "One face": "Point at a face, tap it, or press Enter and then N or P on the view: the panel "
+    "shows the face, its parallelogram and its two angles. A click keeps it, Esc lets it go.",
+    "Undo": "Ctrl+Z takes the last change back, Ctrl+Shift+Z or Ctrl+Y makes it again.",
     "Numbers": "Type any value that a slider has no step for, and press Enter. Deviations are "
     "the largest over all faces, from the angles asked for.",
 }
@@ -50,7 +53,8 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
     """The page of a server, or that of a net that is given; returns the view of the plotter."""
     theme = ("dark ? 'dark' : 'light'",)
     with VAppLayout(server, theme=theme, style=("palette",)):
-        client.Style((FOLDER / "page.css").read_text(encoding="utf-8"))
+        for name in ("page.css", "touch.css"):
+            client.Style((FOLDER / name).read_text(encoding="utf-8"))
         _bar(given)
         with v3.VMain(style="height: 100vh; height: 100dvh"), html.Div(classes="ex"):
             with html.Div(classes="ex-side ex-left"):
@@ -60,7 +64,8 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
                 _numbers()
         _dialogs()
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
-        client.Script((FOLDER / "client.js").read_text(encoding="utf-8"))
+        for name in ("client.js", "touch.js"):
+            client.Script((FOLDER / name).read_text(encoding="utf-8"))
     return view
 
 
@@ -165,11 +170,12 @@ def _shown():
 
 def _numbers():
     """The parallelogram, and what there is to say of the net."""
-    html.H2("Parallelogram")
-    html.Div(v_html="parallelogram_svg", classes="ex-plate")
+    html.H2("{{ face.name || 'Parallelogram' }}", classes="out-face")
+    html.Div(v_html="parallelogram_svg", classes="ex-plate out-parallelogram")
     with html.Div(classes="ex-note ex-ratios out-ratios"):
-        html.Span("\u03bb = |d\u2082|/|d\u2081| = {{ numbers.lam }}")
-        html.Span("\u03bc = |m\u2081\u2083|/|m\u2082\u2084| = {{ numbers.mu }}")
+        html.Span("\u03bb = |d\u2082|/|d\u2081| = {{ face.lam || numbers.lam }}")
+        html.Span("\u03bc = |m\u2081\u2083|/|m\u2082\u2084| = {{ face.mu || numbers.mu }}")
+    widgets.face()
     html.H2("Over all {{ numbers.quads }} faces")
     with html.Table(classes="ex-numbers"):
         with html.Tr():
@@ -212,6 +218,7 @@ def _bar(given):
                 for suffix in SAVED:
                     _saved(suffix, missing(suffix))
         if not given:
+            widgets.undo(_button)
             _button("mdi-link-variant", "Copy link", click="utils.get('inet').copyLink(link)")
             _button("mdi-language-python", "Python", click="code_open = true")
         _button("mdi-theme-light-dark", "Light or dark", click="dark = !dark")
@@ -242,6 +249,7 @@ def _view(plotter):
         with html.Div(classes="ex-view", aria_label=words, **keys):
             loaded = "utils.get('inet')?.loaded()"
             view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
+            widgets.chip()
             with html.Div(classes="ex-tools"):
                 for icon, words, call in TOOLS:
                     about = {"title": words, "aria_label": words, "classes": f"in-{call}"}

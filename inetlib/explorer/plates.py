@@ -21,18 +21,46 @@ EXACT = 1e-9  # degrees: smaller deviations are rounding
 
 def parallelogram(theta: float, theta0: float) -> str:
     """The parallelogram of the angles (radians), sides as d1 and d2, diagonals as u and v."""
-    slanted, centre = ratios(theta, theta0)[0] * np.exp(1j * theta), complex(*BOX) / 2
-    shape = np.array([slanted, 0, 1, 1 + slanted]) - (1 + slanted) / 2
-    scale = min((BOX[0] - 60) / np.ptp(shape.real), (BOX[1] - 44) / np.ptp(shape.imag))
+    slanted = ratios(theta, theta0)[0] * np.exp(1j * theta)
+    words = f"parallelogram with the angle {np.degrees(theta):.4g} degrees"
+    return _inscribed(np.array([slanted, 0, 1, 1 + slanted]) - (1 + slanted) / 2, words)
+
+
+def face(corners: np.ndarray) -> str:
+    """A quad (4, 3) seen along d1 x d2, d1 to the right, and in it its parallelogram."""
+    d1, d2 = corners[2] - corners[0], corners[3] - corners[1]
+    right = d1 / np.linalg.norm(d1)
+    up = d2 - (d2 @ right) * right
+    flat = (corners - corners.mean(axis=0)) @ np.stack([right, up / np.linalg.norm(up)], axis=1)
+    z = flat @ np.array([1, 1j])
+    return _inscribed((np.roll(z, 1) + z) / 2, "a face and its inscribed parallelogram", z)
+
+
+def _inscribed(shape, words, around=()):
+    """A parallelogram A, B, C, D about 0, and the quad v1, ..., v4 that it is inscribed in."""
+    centre, every = complex(*BOX) / 2, np.concatenate([shape, around])
+    margin = np.array([60, 44]) if len(around) == 0 else 16
+    scale = np.min((np.array(BOX) - margin) / (np.ptp(every.real), np.ptp(every.imag)))
+    centre -= scale * complex(_middle(every.real), -_middle(every.imag))
     A, B, C, D = centre + scale * shape.conj()
+    corners = centre + scale * np.conj(around)
     least = min(abs(C - B), abs(A - B))
-    parts = [_line(A, C, "v", 1.5), _line(B, D, "u", 1.5)]
+    parts = [_line(*side, "vu"[k % 2], 2) for k, side in enumerate(_sides(corners))]
+    parts += [_line(A, C, "v", 1.5), _line(B, D, "u", 1.5)]
     parts += [_line(*side, "d1", 3) for side in ((B, C), (A, D))]
     parts += [_line(*side, "d2", 3) for side in ((B, A), (C, D))]
     parts.append(_arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0]))
     reach = min(22, 0.4 * abs(D - centre))
     parts.append(_arc(centre, D - centre, A - centre, reach, NAMES[1]))
-    return _svg(BOX, parts, f"parallelogram with the angle {np.degrees(theta):.4g} degrees")
+    return _svg(BOX, parts, words)
+
+
+def _middle(x):
+    return (x.min() + x.max()) / 2
+
+
+def _sides(corners):
+    return zip(corners, np.roll(corners, -1), strict=True)
 
 
 def histograms(off: Sequence[np.ndarray], asked: tuple[float, float]) -> str:

@@ -2,6 +2,7 @@
 
 import tempfile
 import threading
+from math import radians
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -111,6 +112,11 @@ class Session:
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
         return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}", None))
+
+    @property
+    def angles(self):
+        """theta and theta0 of the choice, radians."""
+        return radians(self.choice.theta), radians(self.choice.theta0)
 
     def deviations(self):
         """theta and theta0 of every face less those asked for, degrees, (2, f)."""

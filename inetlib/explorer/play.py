@@ -1,0 +1,78 @@
+"""What one does with the net that is shown: touch a face, take a choice back, compare."""
+
+import time
+from typing import Any
+
+from . import plates, probe
+from .history import History, differing
+
+
+class Play:
+    """One tab's hand on its net; app: its `app.App`, which shows what changes."""
+
+    def __init__(self, app: Any):
+        self.app, self.history = app, History(app.session.choice)
+        self.face = None  # the number of the face that is touched
+        app.state.update({"face": {}, "can_undo": False, "can_redo": False})
+        for call in (self.touch, self.undo, self.redo):
+            app.server.trigger(call.__name__)(call)
+
+    def begin(self):
+        """The tab has opened with a choice: there is nothing to take back."""
+        self.history = History(self.app.session.choice)
+        self._offer()
+
+    def changed(self):
+        """The choice is another one."""
+        self.history.take(self.app.session.choice, time.monotonic())
+        self._offer()
+
+    def _offer(self):
+        past, following = len(self.history.past) > 1, bool(self.history.next)
+        self.app.state.update({"can_undo": past, "can_redo": following})
+
+    def undo(self):
+        """The choice before the last change."""
+        self._go(self.history.undo())
+
+    def redo(self):
+        """The choice that was taken back."""
+        self._go(self.history.redo())
+
+    def _go(self, choice):
+        names = differing(self.app.session.choice, choice)
+        self.app.session.choice = choice
+        self.app.follow(names)
+        self._offer()
+
+    def touch(self, how: str, camera: dict | None = None, x: float = 0, y: float = 0):
+        """Show a face: the one "at" x, y of the camera (`probe.seen`), in the "middle" of it, the
+        "next" or "previous" one; "none": the whole net again."""
+        session, before = self.app.session, self.face
+        if session.V is None:
+            return
+        V = session.V - self.app.scene.origin
+        if how == "none":
+            self.face = None
+        elif how == "at":
+            self.face = probe.hit(V, session.Q, camera, x, y)
+        elif how == "middle" or before is None:
+            self.face = probe.middle(V, session.Q, camera)
+        else:
+            self.face = (before + (1 if how == "next" else -1)) % len(session.Q)
+        if self.face != before:
+            self.show()
+            if self.face is None:
+                self.app.state.parallelogram_svg = plates.parallelogram(*self.app.session.angles)
+
+    def show(self):
+        """Say what there is to say of the face that is touched."""
+        session, state = self.app.session, self.app.state
+        if self.face is None or session.V is None or self.face >= len(session.Q):
+            self.face, state.face = None, {}
+            return
+        shown = session.shown
+        corners = session.V[session.Q[self.face]]
+        state.face = probe.about(session.V, session.Q, self.face, (shown.theta, shown.theta0))
+        state.face |= {"quad": (corners - self.app.scene.origin).round(9).tolist()}
+        state.parallelogram_svg = plates.face(corners)

@@ -1,0 +1,167 @@
+"""Touching the net in a real browser: hover, tap, keys, undo (Chromium; else skipped)."""
+
+import os
+import signal
+
+import numpy as np
+import pytest
+from browsing import Reader, start
+
+from inetlib import measure
+
+pytestmark = pytest.mark.browser
+
+
+@pytest.fixture(scope="module")
+def reader(chromium, tmp_path_factory):
+    """One tab for all tests here; each begins with its own link."""
+    folder = tmp_path_factory.mktemp("empty")
+    process, address = start(folder=folder, environment=os.environ.copy())
+    page = chromium.new_page(viewport={"width": 1000, "height": 640})
+    found = Reader(page, address, "m=8&n=10")
+    yield found
+    page.close()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 0
+    process.stdout.close()
+    assert found.errors == []
+
+
+def go(reader, query):
+    reader.page.goto(f"{reader.address}?{query}")
+    reader.page.wait_for_selector(".out-flips:not(:empty)")
+    reader.settled()
+
+
+def face(reader):
+    """The number of the face that is shown, None for the whole net."""
+    words = reader.text(".out-face").split()
+    return int(words[1]) - 1 if words[0] == "Face" else None
+
+
+def point(reader, x, y):
+    """Move the mouse to a place of the view, from 0 to 1."""
+    box = reader.page.locator(".ex-view").bounding_box()
+    reader.page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
+    reader.settled()
+
+
+def judge(reader, k):
+    """What is said of a face is what `measure` finds."""
+    V, Q = reader.net()
+    for name, found in zip(("theta", "theta0"), measure.angles(V, Q[k : k + 1]), strict=True):
+        shown = reader.text(f".out-face-{name}")
+        assert shown == f"{np.degrees(found[0]):.6f}\u00b0"
+        assert reader.text(f".out-face-off-{name}").startswith("off by ")
+
+
+def drawn(reader):
+    return reader.page.evaluate("document.querySelector('.ex-touch')?.innerHTML ?? ''")
+
+
+def test_a_face_is_shown_under_the_pointer_and_the_whole_net_when_it_leaves(reader):
+    go(reader, "kind=plane&map=inverse&m=8&n=10")
+    whole = reader.page.inner_html(".out-parallelogram")
+    assert face(reader) is None and not drawn(reader)
+    point(reader, 0.6, 0.5)
+    one = face(reader)
+    judge(reader, one)
+    assert reader.page.inner_html(".out-parallelogram") != whole
+    outline = drawn(reader)
+    assert outline.count("<path") == 12
+    point(reader, 0.7, 0.4)
+    assert face(reader) not in (one, None) and drawn(reader) != outline
+    judge(reader, face(reader))
+    point(reader, 0.02, 0.02)  # beside the net
+    assert face(reader) is None and not drawn(reader)
+    point(reader, 0.6, 0.5)
+    reader.page.mouse.move(20, 300)
+    reader.settled()
+    assert face(reader) is None and reader.page.inner_html(".out-parallelogram") == whole
+
+
+def test_a_click_holds_a_face_that_follows_the_camera_and_the_angles(reader):
+    go(reader, "kind=isothermal&surface=sphere&m=8&n=10")
+    point(reader, 0.5, 0.5)
+    one = face(reader)
+    reader.page.mouse.down()
+    reader.page.mouse.up()
+    reader.settled()
+    point(reader, 0.4, 0.4)
+    assert face(reader) == one
+    before = drawn(reader)
+    reader.page.locator(".ex-view").focus()
+    reader.page.keyboard.press("ArrowLeft")
+    reader.settled()
+    assert drawn(reader) != before
+    reader.type("theta", 75)
+    assert face(reader) == one and reader.text(".out-face-theta").startswith("7")
+    judge(reader, one)
+    reader.page.locator(".ex-view").focus()
+    reader.page.keyboard.press("Escape")
+    reader.settled()
+    assert face(reader) is None
+
+
+def test_faces_are_reached_by_keys(reader):
+    go(reader, "kind=isothermal&surface=sphere&m=8&n=10")
+    reader.page.mouse.move(20, 300)
+    reader.page.locator(".ex-view").focus()
+    seen = []
+    for key in ("Enter", "n", "n", "p", "Escape"):
+        reader.page.keyboard.press(key)
+        reader.settled()
+        seen.append(face(reader))
+    first = seen[0]
+    assert seen[1:] == [first + 1, first + 2, first + 1, None]
+
+
+def test_hovering_does_not_queue_up(reader):
+    go(reader, "m=30&n=30")
+    box = reader.page.locator(".ex-view").bounding_box()
+    calls = """() => {
+      const { trigger } = window.trame;
+      window.asked = 0;
+      window.trame.trigger = (...a) => {
+        window.asked += 1;
+        return trigger.apply(window.trame, a);
+      };
+    }"""
+    reader.page.evaluate(calls)
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    events = """([x, y]) => { for (let k = 0; k < 300; k += 1) {
+      document.querySelector('.ex-view canvas').dispatchEvent(new PointerEvent('pointermove',
+        {clientX: x + k / 10, clientY: y, bubbles: true, pointerType: 'mouse'}));
+    } }"""
+    reader.page.evaluate(events, [x, y])
+    reader.settled()
+    assert 1 <= reader.page.evaluate("window.asked") < 10
+    last = reader.page.evaluate("([x, y]) => inet.at({clientX: x + 29.9, clientY: y})", [x, y])
+    assert last is None and face(reader) is not None
+    judge(reader, face(reader))
+
+
+def test_undo_and_redo_by_button_and_keys(reader):
+    go(reader, "theta=60&theta0=60&m=8&n=10")
+    undo, redo = (reader.page.locator(f".in-{name}") for name in ("undo", "redo"))
+    assert undo.is_disabled() and redo.is_disabled()
+    reader.drag("theta", 0.5)  # one entry, not one a step
+    dragged = reader.choice().theta
+    reader.type("m", 9)
+    undo.click()
+    reader.settled()
+    assert (reader.choice().m, reader.choice().theta) == (8, dragged)
+    reader.page.locator(".ex-view").focus()
+    reader.page.keyboard.press("Control+z")
+    reader.settled()
+    assert reader.choice().theta == 60 and reader.angles()[0] == "60.000000"
+    assert undo.is_disabled() and redo.is_enabled()
+    reader.page.keyboard.press("Control+Shift+Z")
+    reader.page.keyboard.press("Control+y")
+    reader.settled()
+    assert (reader.choice().m, reader.choice().theta) == (9, dragged)
+    field = reader.page.locator(".in-m input[inputmode]")
+    field.fill("12")
+    field.press("Control+z")  # that of the field
+    reader.settled()
+    assert reader.choice().m == 9
