@@ -49,8 +49,10 @@ STILL = """async () => {  // the server answers in order
 class Reader:
     """A tab of the explorer, and what a person would do and read there."""
 
-    def __init__(self, page, address, query=""):
+    def __init__(self, page, address, query="", tour=False):
         self.page, self.address, self.errors = page, address, []
+        if not tour:
+            page.add_init_script("localStorage.setItem('inet-tour', 'seen')")
         page.set_default_timeout(PATIENCE)
         page.on("pageerror", lambda error: self.errors.append(str(error)))
         page.goto(f"{address}?{query}")
@@ -119,4 +121,4 @@ def image(data):
 def is_drawn(picture):
     """Whether there is a net before a plain background."""
     share = (np.abs(picture - picture[-5, 5]).sum(axis=-1) > 30).mean()
-    return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 50
+    return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 20

@@ -1007,3 +1007,19 @@ def test_without_the_packages_of_the_page_the_error_says_what_to_install(kernel,
     with pytest.raises(ImportError, match=r"extra `view`.*pip install"):
         notebook.show(live=True, m=3, n=1)
     assert decoded(notebook.show(live=False, m=3, n=1).data).ndim == 3  # pictures need none
+
+
+def test_every_attribute_of_the_page_reaches_the_browser(app_module, monkeypatch):
+    from trame_client.widgets import core
+
+    made, known = [], core.AbstractElement.__init__
+
+    def init(self, *args, **attributes):
+        known(self, *args, **attributes)
+        made.append(self)
+
+    monkeypatch.setattr(core.AbstractElement, "__init__", init)
+    for net in (None, surfaces.freeform_patch(3, 3)):
+        app_module.App(f"attributes {net is None}", net=net).close()
+    assert len(made) > 200 and all(widget.html for widget in made)
+    assert {w._elem_name: w.skipped_attributes for w in made if w.skipped_attributes} == {}

@@ -56,11 +56,11 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
         for name in ("page.css", "touch.css"):
             client.Style((FOLDER / name).read_text(encoding="utf-8"))
         _bar(given)
-        with v3.VMain(style="height: 100vh; height: 100dvh"), html.Div(classes="ex"):
-            with html.Div(classes="ex-side ex-left"):
+        with v3.VMain(), html.Div(classes="ex"):
+            with html.Div(classes="ex-side ex-left", **_named("what is shown", role="region")):
                 _controls(given)
             view = _view(plotter)
-            with html.Div(classes="ex-side ex-right"):
+            with html.Div(classes="ex-side ex-right", **_named("numbers", role="region")):
                 _numbers()
         _dialogs()
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
@@ -121,11 +121,17 @@ def _number(name, label, condition="true", ends=None):
 
 def _slider(label, low, high, step, **value):
     ends = {"min": (f"{low}",), "max": (f"{high}",), "step": step}
-    v3.VSlider(aria_label=label, **value, **ends, **SLIDER)
+    v3.VSlider(name=label, **value, **ends, **SLIDER)  # the thumb's name for screen readers
 
 
 def _field(label, **value):
-    v3.VTextField(inputmode="decimal", aria_label=f"{label}, value", **value, **FIELD)
+    v3.VTextField(inputmode="decimal", **_named(f"{label}, value"), **value, **FIELD)
+
+
+def _named(words, **more):
+    """A name for screen readers, and other attributes that trame drops unless they are raw."""
+    given = {"aria-label": words} | {name.replace("_", "-"): x for name, x in more.items()}
+    return {"raw_attrs": [f'{name}="{x}"' for name, x in given.items() if x]}
 
 
 def _profile():
@@ -202,7 +208,7 @@ def _numbers():
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
     words = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "
     words += "\u03b8\u2080 = {{ numbers.theta0 }}\u00b0"
-    html.Div(words, v_show="problem", classes="ex-note text-warning")
+    html.Div(words, v_show="problem", classes="ex-note ex-warning")
     html.H2("Deviations, face by face")
     html.Div(v_html="histogram_svg", classes="ex-plate out-histogram")
 
@@ -226,7 +232,8 @@ def _bar(given):
 
 
 def _button(icon, words, name="", **does):
-    with v3.VBtn(size="small", variant="text", classes=f"text-none {name}", title=words, **does):
+    about = {"classes": f"text-none {name}", "title": words, **_named(words)}
+    with v3.VBtn(size="small", variant="text", **about, **does):
         v3.VIcon(icon, start=True)
         html.Span(words, classes="d-none d-md-inline")
 
@@ -244,28 +251,29 @@ def _view(plotter):
     """The net, and one line below: why there is none, how far the search is, or on the net."""
     words = "the net; arrow keys turn it, plus and minus zoom, F fits it"
     keys = {"tabindex": "0", "keydown": "utils.get('inet').keys($event)"}
-    small = {"size": "x-small", "color": "primary"}
+    small = {"size": "x-small", "variant": "tonal", "color": "primary"}
     with html.Div(classes="ex-middle"):
-        with html.Div(classes="ex-view", aria_label=words, **keys):
+        with html.Div(classes="ex-view", **_named(words, role="application"), **keys):
             loaded = "utils.get('inet')?.loaded()"
             view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
             widgets.chip()
-            with html.Div(classes="ex-tools"):
+        with html.Div(classes="ex-foot"):
+            with html.Div(classes="ex-status", **_named("", role="status", aria_live="polite")):
+                shown = {"v_if": ("problem && !searching",), "classes": "ex-warning out-problem"}
+                html.Div("{{ problem }}", **shown)
+                with html.Div(v_if=("searching",)):
+                    v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
+                    html.Span("{{ progress }}", classes="out-progress mx-2")
+                    v3.VBtn("Stop", click="trigger('stop')", classes="text-none in-stop", **small)
+                with html.Div(v_if=("!searching && (message || can_search)",)):
+                    html.Span("{{ message }}", v_if=("!problem",), classes="out-message mr-2")
+                    again = {"v_if": ("can_search",), "classes": "text-none in-run"}
+                    v3.VBtn("Run again", click="trigger('run')", **again, **small)
+            with html.Div(classes="ex-tools", **_named("view", role="group")):
                 for icon, words, call in TOOLS:
-                    about = {"title": words, "aria_label": words, "classes": f"in-{call}"}
+                    about = {"title": words, "classes": f"in-{call}", **_named(words)}
                     click = f"trigger('{call}', [utils.get('inet').place()])"
-                    v3.VBtn(icon=icon, size="x-small", click=click, **about)
-        with html.Div(classes="ex-status", role="status"):
-            shown = {"v_if": ("problem && !searching",), "classes": "text-warning out-problem"}
-            html.Div("{{ problem }}", **shown)
-            with html.Div(v_if=("searching",)):
-                v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
-                html.Span("{{ progress }}", classes="out-progress ml-2")
-                v3.VBtn("Stop", click="trigger('stop')", classes="text-none ml-2 in-stop", **small)
-            with html.Div(v_if=("!searching && (message || can_search)",)):
-                html.Span("{{ message }}", v_if=("!problem",), classes="out-message")
-                again = {"v_if": ("can_search",), "classes": "text-none ml-2 in-run"}
-                v3.VBtn("Run again", click="trigger('run')", **again, **small)
+                    v3.VBtn(icon=icon, size="small", variant="text", click=click, **about)
     return view
 
 
@@ -286,7 +294,7 @@ def _dialogs():
 @contextmanager
 def _dialog(name, title):
     with v3.VDialog(v_model=(name,), max_width=760), v3.VCard(title=title):
-        about = {"icon": "mdi-close", "variant": "text", "size": "small", "aria_label": "close"}
+        about = {"icon": "mdi-close", "variant": "text", "size": "small", **_named("close")}
         place = "position: absolute; right: 0.5rem; top: 0.5rem"
         v3.VBtn(style=place, click=f"{name} = false", **about)
         with v3.VCardText():

@@ -1,0 +1,97 @@
+"""Whether the explorer's page can be read and used by everybody, in a real browser (Chromium)."""
+
+import os
+import signal
+
+import pytest
+from browsing import Reader, start
+
+pytestmark = pytest.mark.browser
+
+CONTRAST = """() => {  // texts whose contrast is below 4.5, with opacity and what lies behind them
+  const rgba = (c) => {
+    const x = c.match(/[\\d.]+/g).map(Number);
+    return c.startsWith('color(') ? [...x.slice(0, 3).map((v) => 255 * v), x[3] ?? 1]
+      : [...x.slice(0, 3), x[3] ?? 1];
+  };
+  const over = (f, b) => [0, 1, 2].map((k) => f[k] * f[3] + b[k] * (1 - f[3])).concat(1);
+  const bright = (c) => c.slice(0, 3).map((x) => (x / 255 <= 0.03928
+    ? x / 255 / 12.92 : ((x / 255 + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, x, k) => sum + x * [0.2126, 0.7152, 0.0722][k], 0);
+  const found = [], texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  let count = 0;
+  while (texts.nextNode()) {
+    const text = texts.currentNode.data.trim(), e = texts.currentNode.parentElement;
+    const seen = {visibilityProperty: true, opacityProperty: true};
+    if (!text || !e.checkVisibility(seen) || e.closest('style, script, .v-list-item--disabled'))
+      continue;
+    const style = getComputedStyle(e);
+    let front = rgba(e instanceof SVGElement ? style.fill : style.color), back = [255, 255, 255, 1];
+    const chain = [];
+    for (let p = e; p; p = p.parentElement) {
+      front[3] *= Number(getComputedStyle(p).opacity);
+      chain.unshift(p);
+    }
+    for (const p of chain) back = over(rgba(getComputedStyle(p).backgroundColor), back);
+    const [a, b] = [bright(over(front, back)), bright(back)].sort((x, y) => y - x);
+    count += 1;
+    if ((a + 0.05) / (b + 0.05) < 4.5) found.push(`${text}: ${(a + 0.05) / (b + 0.05)}`);
+  }
+  return [count, found];
+}"""
+WIDE = "() => document.documentElement.scrollWidth - innerWidth"
+
+
+@pytest.fixture(scope="module")
+def reader(chromium, tmp_path_factory):
+    """One tab of the explorer for all tests of this file; its page must not throw an error."""
+    process, address = start(folder=tmp_path_factory.mktemp("x"), environment=os.environ.copy())
+    page = chromium.new_page(viewport={"width": 1280, "height": 720})
+    found = Reader(page, address, "kind=revolution&m=8&n=6")
+    yield found
+    errors = list(found.errors)
+    page.close()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 0 and errors == []
+    process.stdout.close()
+
+
+def opened(reader, query, scheme="light", size=(1280, 720)):
+    """The page of another link, in light or dark, at a size."""
+    reader.page.emulate_media(color_scheme=scheme)
+    reader.page.set_viewport_size(dict(zip(("width", "height"), size, strict=True)))
+    reader.page.goto(f"{reader.address}?{query}")
+    reader.page.wait_for_selector(".out-flips:not(:empty)")
+    reader.settled()
+
+
+def test_whatever_can_be_used_has_a_name_and_what_happens_is_announced(reader):
+    session = reader.page.context.new_cdp_session(reader.page)
+    nodes = session.send("Accessibility.getFullAXTree")["nodes"]
+    session.detach()
+    used = [x for x in nodes if "focusable" in [p["name"] for p in x.get("properties", ())]]
+    shown = [(x["role"]["value"], x["name"]["value"].strip()) for x in used]
+    assert {role for role, _ in shown} >= {"button", "checkbox", "combobox", "application"}
+    assert {role for role, name in shown if not name} <= {"generic"}  # what scrolls
+    for role in ("slider", "textbox"):  # both of a value are named after it
+        words = {name for r, name in shown if r == role}
+        assert {"\u03b8", "radius at height 0"} <= {name.removesuffix(", value") for name in words}
+    status = reader.page.get_by_role("status").filter(has_text="exact")
+    assert status.get_attribute("aria-live") == "polite"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_every_text_stands_out_and_a_telephone_has_nothing_to_scroll_sideways(reader, scheme):
+    opened(reader, "kind=revolution&theta=1&theta0=179&shade=1", scheme)
+    count, faint = reader.page.evaluate(CONTRAST)
+    assert count > 40 and faint == []
+    reader.page.set_viewport_size({"width": 390, "height": 844})
+    reader.settled()
+    count, faint = reader.page.evaluate(CONTRAST)
+    assert count > 40 and faint == [] and reader.page.evaluate(WIDE) <= 0
+    top, *rest = (
+        reader.page.locator(name).bounding_box() for name in (".ex-view", ".ex-left", ".ex-right")
+    )
+    assert top["height"] > 300 and all(box["y"] >= top["y"] + top["height"] for box in rest)
+    html = "getComputedStyle(document.documentElement).backgroundColor"
+    assert (reader.page.evaluate(html) == "rgb(255, 255, 255)") is (scheme == "light")
