@@ -23,7 +23,7 @@ CONTRAST = """() => {  // texts whose contrast is below 4.5, with opacity and wh
   while (texts.nextNode()) {
     const text = texts.currentNode.data.trim(), e = texts.currentNode.parentElement;
     const seen = {visibilityProperty: true, opacityProperty: true};
-    if (!text || !e.checkVisibility(seen) || e.closest('style, script, .v-list-item--disabled'))
+    if (!text || !e.checkVisibility(seen) || e.closest('style, script, :disabled'))
       continue;
     const style = getComputedStyle(e);
     let front = rgba(e instanceof SVGElement ? style.fill : style.color), back = [255, 255, 255, 1];
