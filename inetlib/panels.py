@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 from scipy.spatial import cKDTree
 
 from . import mesh, ties
@@ -29,6 +30,24 @@ def _groups(panels: Sequence) -> Iterator[tuple[np.ndarray, np.ndarray]]:
         yield numbers, np.array([panels[k] for k in numbers])
 
 
+def area_vectors(P: np.ndarray) -> np.ndarray:
+    """The vector areas (g, 3) of polygons P (g, k, 3): along the normal, as long as the shadow."""
+    P = P - P[:, :1]
+    return np.cross(P, np.roll(P, -1, axis=1)).sum(axis=1) / 2
+
+
+def crossed(V: np.ndarray, panels: Sequence) -> np.ndarray:
+    """The numbers of the panels whose sides cross or touch, seen along the normal; increasing."""
+    found = [np.empty(0, dtype=np.int64)]
+    for numbers, corners in _groups(panels):
+        P = V[corners] - V[corners].mean(axis=1, keepdims=True)
+        normal = area_vectors(P)
+        axes = np.linalg.svd(normal[:, None])[2][:, 1:]  # two unit vectors across it
+        shadows = np.einsum("gkx,gax->gka", P, axes)
+        found.append(numbers[~shapely.is_valid(shapely.polygons(shadows))])
+    return np.sort(np.concatenate(found))
+
+
 def shapes(V: np.ndarray, panels: Sequence) -> Shapes:
     """The `Shapes` of panels; ValueError where one has no area."""
     first = np.cumsum([0, *map(len, panels)])
@@ -39,7 +58,7 @@ def shapes(V: np.ndarray, panels: Sequence) -> Shapes:
         centre[numbers] = P.mean(axis=1)
         P = P - centre[numbers][:, None]
         out, back = np.roll(P, -1, axis=1) - P, np.roll(P, 1, axis=1) - P
-        normal = np.cross(P, np.roll(P, -1, axis=1)).sum(axis=1) / 2
+        normal = area_vectors(P)
         area[numbers] = np.linalg.norm(normal, axis=1)
         flat = ~(area[numbers] > 1e-14 * np.sum(out**2, axis=(1, 2)))
         if flat.any():

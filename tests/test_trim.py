@@ -9,7 +9,7 @@ import pytest
 import shapely
 from test_repair import sheet
 
-from inetlib import design, examples, io, measure, mesh, repair
+from inetlib import design, examples, io, measure, mesh, panels, repair
 from inetlib.design import opening, overlay, regions, trim
 
 PAIRS = [(60, 60), (90, 90), (75, 50)]
@@ -75,10 +75,10 @@ def test_roofs_with_openings_are_covered_exactly_and_to_the_edge(name, pair):
     assert len(seen.interiors) == ROOFS[name]
     quads = shapely.polygons(net.V[net.Q][:, :, :2])
     assert (shapely.area(shapely.intersection(quads, seen)) > 0.5 * shapely.area(quads)).all()
-    panels = [*quads, *(shapely.Polygon(net.V[polygon, :2]) for polygon in net.polygons)]
-    assert all(panel.is_valid and panel.exterior.is_ccw for panel in panels)
-    area = sum(panel.area for panel in panels)
-    assert shapely.union_all(panels).area == pytest.approx(area, rel=1e-3)
+    shadows = [*quads, *(shapely.Polygon(net.V[polygon, :2]) for polygon in net.polygons)]
+    assert all(shadow.is_valid and shadow.exterior.is_ccw for shadow in shadows)
+    area = sum(shadow.area for shadow in shadows)
+    assert shapely.union_all(shadows).area == pytest.approx(area, rel=1e-3)
     assert area == pytest.approx(seen.area, rel=0.01)
     assert net.report.covered == pytest.approx(1, abs=0.01) and not net.report.notes
     assert len(net.report.polygons) == len(net.polygons)
@@ -110,6 +110,36 @@ def test_the_areas_of_quads_and_panels_in_the_plane_add_up(name, openings):
         around = regions.regions(flat, layer)
         parts = [np.imag(np.conj(z) @ np.roll(z, -1)) / 2 for z in around.z]
         assert sum(parts) + len(around.layer.Q) * cell == pytest.approx(area, rel=1e-9)
+
+
+def test_a_corner_that_moves_across_the_boundary_leaves_no_panel_crossed(tmp_path):
+    surface, pair = examples.five_skylights(12), (102, 70)
+    flat, _ = domain(surface, "fill")
+    laid = trim.trim(flat, overlay.cover(flat, *np.radians(pair), 676))
+    net = cover(surface, pair, count=676, openings="fill", trim=True)
+    check_panels(net, surface)
+    lost = len(laid.layer.Q) - len(net.Q)
+    assert lost > 0 and len(net.polygons) == len(laid.polygons) + lost
+    assert len(repair.triangulate(net.V, net.polygons)) == sum(len(p) - 2 for p in net.polygons)
+    assert net.report.covered == pytest.approx(1, abs=0.01)
+    assert measure.deviations(net.V, net.Q, *np.radians(pair)).max() < np.radians(1e-9)
+    known = {frozenset(side) for side in sides_of(net.Q)}
+    assert all(len(x) for x in net.edges.values())
+    assert not [e for x in net.edges.values() for e in x.tolist() if frozenset(e) in known]
+
+
+def test_panels_with_sides_that_cross_are_found_in_any_plane():
+    rng = np.random.default_rng(3)
+    across = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+    places = [[0, 0], [2, 0], [2, 1], [0, 1], [1, 0.2], [0.5, -0.2]]
+    V = np.array(places) @ across + 0.01 * rng.normal(size=(6, 3))
+    good = [[0, 1, 2], [0, 1, 2, 3], [0, 1, 2, 4], [0, 5, 1, 2, 3]]
+    bad = [[0, 1, 3, 2], [0, 2, 1, 4, 3], [0, 1, 5, 4, 2]]
+    for panel in bad:
+        x, y = np.array(places)[panel].T
+        assert not shapely.Polygon(np.stack([x, y], axis=1)).is_valid
+    assert panels.crossed(V, [*good, *bad]).tolist() == [4, 5, 6]
+    assert panels.crossed(V, good).size == panels.crossed(V, []).size == 0
 
 
 def test_a_ring_is_trimmed_across_its_seam():

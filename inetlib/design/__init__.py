@@ -19,6 +19,7 @@ from ..solver.sparse import BLAS
 from . import flatten, opening, overlay, steer
 from .report import Report, area_of, survey
 from .trim import trim as cut
+from .trim import uncrossed
 
 POLISH = {"shape_steps": 0, "via": "jump"}  # smallest steps to the angles, in free space
 ON = POLISH | {"on_surface": True}
@@ -123,9 +124,12 @@ def cover(
             ways["fixed"] = pinned if len(pinned) else None
             net, done, words = _optimise(layer, theta, theta0, callback, ways)
     with stage("report"):
-        polygons = edge.polygons if trim else []
-        net = np.concatenate([net, edge.extra]) if trim else net
-        found = survey(net, layer.Q, theta, theta0, goal, flat, polygons)
+        Q, polygons = layer.Q, []
+        if trim:
+            net, plain = (np.concatenate([x, edge.extra]) for x in (net, layer.V))
+            net, Q, edge = uncrossed(net, plain, Q, edge)
+            polygons = edge.polygons
+        found = survey(net, Q, theta, theta0, goal, flat, polygons)
     words += _away(found, surface) if done else ""
     found = found._replace(converged=done, message=words, winding=layer.winding)
     found = found._replace(repairs=tuple(surface.repairs), seconds=seconds)
@@ -133,8 +137,8 @@ def cover(
         missed = "no whole quad reaches the point to go through: trim the net, or ask for more"
         found = found._replace(notes=(*found.notes, missed))
     if not trim:
-        return Cover(net, layer.Q, found, [])
-    return Cover(net, layer.Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
+        return Cover(net, Q, found, [])
+    return Cover(net, Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
 
 
 def _away(found, surface):

@@ -116,7 +116,7 @@ def survey(
     outline = np.stack([start, end], axis=1)[alone]
     back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, V, x)[0]) for x in (T, outline))
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
-    cut = sum(float(np.linalg.norm(_area_vector(V[polygon]))) for polygon in polygons)
+    cut = sum(float(np.linalg.norm(panels.area_vectors(V[p][None]))) for p in polygons)
     covered = (area_of(V, Q) + cut) / area_of(goal.V, goal.F)
     notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))
     scale_ratio = float(flat.scale.max() / flat.scale.min())
@@ -163,11 +163,6 @@ def out_of_plane(V: np.ndarray, Q: np.ndarray, polygons: Sequence, beyond: float
 def area_of(V: np.ndarray, F: np.ndarray) -> float:
     """The area of triangles (f, 3) or quads (f, 4), cut along their shorter diagonals."""
     return float(igl.doublearea(*mesh.triangles(V, F)).sum() / 2)
-
-
-def _area_vector(corners):
-    P = corners - corners[0]
-    return np.cross(P, np.roll(P, -1, axis=0)).sum(axis=0) / 2
 
 
 def numbers(report: Report) -> dict:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from .. import mesh
+from .. import mesh, panels
 from ..reference import CORNER
 from . import faces as cut
 from . import overlay
@@ -63,6 +63,39 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
     drawn += [Face(face.ring[k], face.z[k]) for face, k in parts]
     edges = _edges(layer, [(number[face.ring], face.z) for face in drawn])
     return Trimmed(layer, V[extra], [number[ring] for ring in rings], areas, edges)
+
+
+def uncrossed(
+    V: np.ndarray, plain: np.ndarray, Q: np.ndarray, trimmed: Trimmed
+) -> tuple[np.ndarray, np.ndarray, Trimmed]:
+    """(V, Q, `Trimmed`) where no cut panel crosses itself since the net has moved to V (n, 3).
+
+    A corner may have moved across the boundary beside it: it goes back to its place in plain
+    (n, 3), and the quads Q (f, 4) around it are whole no longer, but cut panels."""
+    while (bad := panels.crossed(V, trimmed.polygons)).size:
+        far = np.linalg.norm(V - plain, axis=1)
+        corners = [trimmed.polygons[k] for k in bad]
+        moved = [x[np.argmax(far[x] / _near(plain[x]))] for x in corners]
+        lost = np.isin(Q, moved).any(axis=1)
+        if not lost.any() or lost.all():
+            break
+        V = V.copy()
+        V[moved] = plain[moved]
+        edges = {}
+        for kind, at in (("u", [[1, 2], [3, 0]]), ("v", [[0, 1], [2, 3]])):
+            known = np.sort(Q[~lost][:, at].reshape(-1, 2), axis=1)
+            new = np.sort(Q[lost][:, at].reshape(-1, 2), axis=1)
+            new = new[~(new[:, None] == known).all(axis=2).any(axis=1)]
+            edges[kind] = np.unique(np.concatenate([trimmed.edges[kind], new]), axis=0)
+        trimmed = trimmed._replace(polygons=[*trimmed.polygons, *Q[lost]], edges=edges)
+        Q = Q[~lost]
+    return V, Q, trimmed
+
+
+def _near(P):
+    """The distances (k,) of the corners of a polygon P (k, 3) from their next neighbours."""
+    side = np.linalg.norm(np.roll(P, -1, axis=0) - P, axis=1)
+    return np.minimum(side, np.roll(side, 1))
 
 
 def _lifted(domain, outline, z):

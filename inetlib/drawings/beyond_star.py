@@ -89,7 +89,7 @@ def draw(theta=60 * DEGREE, theta0=45 * DEGREE):
     claims = {f"{name}: order": _order(x) for name, x in smooth.items()}
     claims["z2: largest deviation, degrees"] = chords["z2"].max()
     roof = zip(SIZES, chords["roof"][:, 1], strict=True)
-    claims |= {f"roof, m = {m}: largest deviation, degrees": round(x, 6) for m, x in roof}
+    claims |= {f"roof, m = {m}: largest deviation, degrees": round(x, 4) for m, x in roof}
     data = {f"chords {name}": x for name, x in chords.items()}
     return figure, data | {f"units {name}": x for name, x in units.items()}, exact, claims
 

@@ -20,7 +20,7 @@ Change = tuple[np.ndarray, np.ndarray]  # of V (n, 3) and of the freedom s
 REGULAR = 1e-12  # of the mean diagonal, in the matrix of an angle step
 MANY = 4000  # faces: from here on waves beat factors where the mesh is a piece of a grid
 WAVES = 1e-2  # relative residual of a smallest step by waves, at most
-SETTLED = 1e-6  # radians, about: then vertices this close (in diagonals) to a surface stay so
+SETTLED = 1e-6  # radians, about: then waves leave vertices this close (in diagonals) to a surface
 EXACT = 3e-12  # radians, about: smaller errors of the angles are not aimed at by waves
 COUPLING = 100  # weight of shifting every other vertex in the size of a coupled step
 LOOSE = 1e-6, 0.0  # weights of that size, and of the distances from the reference, at the end
@@ -194,19 +194,20 @@ def angle_step(problem: Problem, V: np.ndarray, goal: Goal, s: np.ndarray) -> Ch
     the vertices go to their closest points and move along the tangent planes there."""
     with timed(problem.seconds, "assemble"):
         f, J, G = equations(problem, V, goal, s)
-        free, root, lift = _metric(problem, V, np.abs(f).max() <= SETTLED)
+        waves = problem.piece is not None and len(problem.Q) > MANY
+        free, root, lift = _metric(problem, V, waves and np.abs(f).max() <= SETTLED)
         right = np.column_stack([f + J @ lift, G])
         J = free(J)
-    y = _smallest(problem, J, right, f)
+    y = _smallest(problem, J, right, f, waves)
     ds = _freedom(G.T @ y[:, 1:], G.T @ y[:, 0])
     d = lift - root @ (J.T @ (y[:, 0] - y[:, 1:] @ ds))
     return d.reshape(-1, 3), ds
 
 
-def _smallest(problem, J, right, f):
-    """y (2 f, k) with J J^T y = right: by waves in a large piece of a grid, else by factors."""
+def _smallest(problem, J, right, f, waves):
+    """y (2 f, k) with J J^T y = right: by waves, in a large piece of a grid, else by factors."""
     more = REGULAR * (J.data @ J.data) / len(f)
-    if problem.piece is not None and len(problem.Q) > MANY:
+    if waves:
         with timed(problem.seconds, "solve"):
             off = max(np.abs(f).max() ** 1.5, EXACT)
             part = min(off / np.abs(right[:, 0]).max(initial=off), WAVES)
