@@ -40,6 +40,7 @@ class App:
         self._echo()
         self.play = Play(self)
         self.view = page.build(self.server, self.scene.plotter, self.session.given)
+        self.state.trame__template_error = self.state.trame__template_main  # see `ended` there
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
         for call in (self.arrive, self.save, self.run, self.stop):

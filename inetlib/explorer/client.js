@@ -61,8 +61,18 @@ window.inet = {
     this.loads += 1;
     if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
   },
+  ended() {
+    // The page stays as it is and can be turned; what asks the program is dead.
+    const words = "The program that made this page has ended. Start it again with \u201cinet explore\u201d "
+      + "and open the address it prints, or run the cell of the notebook again.";
+    const banner = Object.assign(document.createElement("div"), { className: "ex-ended", textContent: words });
+    banner.setAttribute("role", "alert");
+    document.body.append(banner);
+    document.querySelectorAll(".ex-side, .ex-status, .ex-tools, .v-app-bar").forEach((e) => { e.inert = true; });
+  },
   arrive() {
     this.listen();
+    window.trame.client.onConnectionClose(() => this.ended());
     const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
     window.trame.trigger("arrive", [window.location.search, dark, this.place()]);
   },

@@ -126,6 +126,8 @@ class Door:
         token = request.path.split("/")[1].encode()
         if not secrets.compare_digest(token, self.token.encode()):
             raise web.HTTPForbidden(text=STRANGER)
+        if request.method == "POST":  # trame's page looks for a launcher: there is none
+            return web.Response(status=204)
         return await handler(request)
 
     async def _tab(self, request):
