@@ -15,6 +15,7 @@ from .parallelogram import check_angle, check_positive, check_whole, from_rho, r
 from .surfaces import Profile, check_profile, mercator, revolve, torus_profile
 
 ENOUGH = "as many as asked for"
+SHORT = "the profile is too short"
 FITS = 1e-12  # a last row that is too high by this part of it still fits: the rest is rounding
 MOST, MARCHED = 10_000_000, 5000  # quads of a web; rows that are found one by one
 AROUND = "d1", "u", "d2", "v"  # the four directions, counter-clockwise within half a turn
@@ -84,7 +85,7 @@ def web(
         step = 2 * np.pi / m * np.sin(theta0) / ratios(theta, theta0)[1]
         fit = int(w_of_t(profile.stop) / step * (1 + ties.TIE))
         w = step * np.arange(1 + (fit if n is None else min(n, fit)))
-        t, turn, why = t_of_w(w), w / np.tan(theta0), ENOUGH if len(w) - 1 == n else _ended(profile)
+        t, turn, why = t_of_w(w), w / np.tan(theta0), ENOUGH if len(w) - 1 == n else SHORT
     elif method == "exact":
         t, turn, why = _march(profile, n, *_exact_ring(profile, theta, theta0, m)[:2])
     elif method == "paper":
@@ -93,7 +94,8 @@ def web(
     else:
         raise ValueError(f'method = {method!r}: "exact", "smooth" or "paper" is wanted')
     if len(t) == 1:
-        raise ValueError(f"not one row of {m} quads: {why} (try a larger m)")
+        may = "a larger m (smaller quads), a longer profile or other angles may do"
+        raise ValueError(f"not one row of {m} quads fits, {why}: {may}")
     asked = f" of {n}" if n is not None and len(t) <= n else ""
     rows, up = len(t) - 1, np.arange(len(t))
     V = _points(profile, m, t, turn)
@@ -101,6 +103,7 @@ def web(
     slanted = (np.arange(m)[:, None] + up) % m
     curves = (np.vstack([index, index[:1]]).T, index, index[slanted, rows - up], index[slanted, up])
     families = Families(*([V[line] for line in lines] for lines in curves))
+    why = why if why == ENOUGH else f"a further one does not fit, {why}"
     message, Q = f"{rows}{asked} rows of {m} quads: {why}", _quads(index[:, :-1], index[:, 1:])
     if bad := len(np.union1d(measure.flipped(V, Q), measure.nonconvex(V, Q))):
         message += f"; {bad} faces are flipped or darts: take a larger m"
@@ -129,10 +132,6 @@ def _check_size(profile, theta, theta0, m, n, method):
         raise ValueError(f"about {rows:.0f} rows of {m} quads fit: choose a smaller n or m")
 
 
-def _ended(profile):
-    return f"a further one does not fit: the meridian ends at t = {profile.stop:.6g}"
-
-
 def _march(profile, n, following, turn):
     """(t, turns, why): rings from profile.start up, n rows or as many as fit (n = None).
 
@@ -141,7 +140,7 @@ def _march(profile, n, following, turn):
     t, turns, why = [profile.start], [0.0], None
     while why is None and (n is None or len(t) <= n):
         ended = profile.stop - t[-1] < FITS * (profile.stop - profile.start)
-        after, why = (None, _ended(profile)) if ended else following(t[-1])
+        after, why = (None, SHORT) if ended else following(t[-1])
         if why is None:
             turns.append(turns[-1] + float(turn(t[-1], after)))
             t.append(after)
@@ -211,9 +210,9 @@ def _exact_ring(profile, theta, theta0, m):
             low, length = high, 2 * length
         if t is None:
             fits = off(t0, profile.stop) < FITS * (2 * radius * np.sin(half)) ** 2
-            return (profile.stop, None) if fits else (None, _ended(profile))
+            return (profile.stop, None) if fits else (None, SHORT)
         if np.isnan(t):
-            return None, f"a further one does not fit: no such quad stands on t = {t0:.6g}"
+            return None, f"no quad with these angles stands where the radius is {radius:.6g}"
         return t, None
 
     return following, turn, off
@@ -279,14 +278,14 @@ def _paper_ring(profile, theta, theta0, m, equation):
         if off(t0, low) * off(t0, high) < 0:
             return _root(partial(off, t0), low, high), None
         none = f'the equation "{equation}" has no root where the next row should be'
-        return None, _ended(profile) if ended else none
+        return None, SHORT if ended else none
 
     return following, turn, off
 
 
 def _check_not_vacuous(theta, theta0, equation):
     lam, mu = ratios(theta, theta0)
-    use = 'use equation = "mu" or method = "exact"'
+    use = 'use method = "exact" (or equation = "mu", in Python)'
     if equation == "lam" and abs(np.log(lam)) < 1e-9:
         why = "theta0 = 90 degrees: lam = 1, and |A-D| = lam |B-C| holds on every parallel"
         raise ValueError(f"{why}, so it finds none; {use}")

@@ -47,7 +47,7 @@ class Fault(ValueError):
 
 def place(point: np.ndarray) -> str:
     """A point in words."""
-    return "(" + ", ".join(f"{x:.6g}" for x in point) + ")"
+    return "(" + ", ".join(f"{x + 0.0:.6g}" for x in point) + ")"
 
 
 def grid_quads(m: int, n: int) -> np.ndarray:
@@ -151,7 +151,7 @@ def pairs(F: np.ndarray) -> np.ndarray:
     three = np.flatnonzero(same[1:] & same[:-1])
     if three.size:
         h = order[three[0]]
-        words = "the edge {} belongs to more than two faces: not a manifold"
+        words = "the edge {} belongs to more than two faces: not a manifold, part them"
         raise Fault(words, [start[h], end[h]])
     first = np.flatnonzero(same)
     return np.stack([order[first], order[first + 1]], axis=1)

@@ -169,7 +169,8 @@ def orient(T: np.ndarray) -> tuple:
     turn, loop = mesh.two_colour(len(T), one // 3, two // 3, clash)
     if loop is not None:
         words = (
-            "the surface is one-sided: see the loop of triangles that begin with the vertices {}"
+            "the surface is one-sided: see the loop of triangles that begin with the vertices {}, "
+            "and cut it there"
         )
         raise mesh.Fault(words, T[loop, 0])
     piece = components(len(T), one // 3, two // 3)
@@ -184,7 +185,9 @@ def normals(V: np.ndarray, T: np.ndarray) -> np.ndarray:
     area = np.linalg.norm(normal, axis=1)
     flat = ~(area > FLAT * np.sum(sides**2, axis=2).max(axis=1))
     if flat.any():
-        raise mesh.Fault("the triangle {} has no area", T[np.argmax(flat)], V)
+        raise mesh.Fault(
+            "the triangle {} has no area: remove it, or join its corners", T[np.argmax(flat)], V
+        )
     return normal / area[:, None]
 
 
@@ -193,7 +196,7 @@ def require_single_fans(V: np.ndarray, T: np.ndarray, twin: np.ndarray) -> None:
     _, first = np.unique(corner_fans(T, twin), return_index=True)
     pinched = np.flatnonzero(np.bincount(T.ravel()[first]) > 1)
     if pinched.size:
-        words = "the faces at vertex {} form two fans: not a manifold (boundaries may touch there)"
+        words = "the faces at vertex {} form two fans: not a manifold, part them there"
         raise mesh.Fault(words, pinched[0], V)
 
 
@@ -336,7 +339,7 @@ def _ears(V, face):
         )  # corners, or bridges to them
         good = np.flatnonzero(turned & ~(inside.all(axis=1) & ~own).any(axis=1))
         if not good.size:
-            raise mesh.Fault("the face {} has no area, or sides that cross", face, V)
+            raise mesh.Fault("the face {} has no area, or sides that cross: divide it", face, V)
         cuts = np.linalg.norm(P[ears[good, 2]] - P[ears[good, 0]], axis=1)
         k = good[ties.first_smallest(cuts)]
         found.append(ears[k])

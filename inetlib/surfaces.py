@@ -214,7 +214,9 @@ def spline_profile(points: ArrayLike) -> Profile:
         raise ValueError(f"point {np.argmin(np.isfinite(rows).all(axis=1))} is not finite")
     chords = np.hypot(*np.diff(rows, axis=0).T)
     if not chords.all():
-        raise ValueError(f"points {np.argmin(chords)} and {np.argmin(chords) + 1} are the same")
+        raise ValueError(
+            f"points {np.argmin(chords)} and {np.argmin(chords) + 1} are the same: leave one out"
+        )
     t = np.concatenate([[0.0], np.cumsum(chords)])
     radius, height = (make_interp_spline(t, x, k=min(3, len(t) - 1)) for x in rows.T)
     return check_profile(Profile(radius, height, 0.0, float(t[-1])))
@@ -235,14 +237,15 @@ def check_profile(profile: Profile) -> Profile:
     if not (x > 0).all():
         at = np.argmin(x)
         words = "it must stay positive, shorten the profile so that it does not reach the axis"
-        raise ValueError(f"radius = {x[at]:.6g} at t = {t[at]:.6g}: {words}")
+        raise ValueError(f"radius = {x[at]:.6g} at the height {y[at]:.6g}: {words}")
     steps = np.diff([x, y])
     if not np.hypot(*steps).all():
         raise ValueError("the profile stands still somewhere: radius' and height' vanish together")
     turn = np.sum(steps[:, 1:] * steps[:, :-1], axis=0)
     if not (turn > 0).all():
         at = 1 + np.argmin(turn)
-        raise ValueError(f"the profile turns back or has a sharp corner near t = {t[at]:.6g}")
+        where = f"near the radius {x[at]:.6g} and the height {y[at]:.6g}"
+        raise ValueError(f"the profile turns back or has a sharp corner {where}: smooth it there")
     return profile
 
 

@@ -157,6 +157,9 @@ NEAREST = {
     "mesure a.obj": "did you mean measure?",
     "optimise a.obj": "did you mean optimize?",
     "xyz": "there are examples, show,",
+    "measure a.obj b.obj": "b.obj is a word too many (quote names with spaces)",
+    "cover rof --theta 60 --theta0 60 -o a.obj": "no example: did you mean roof?",
+    "web --profile vaze --theta 60 --theta0 60 -m 12 -o a.obj": "did you mean vase?",
     "cover roof --thta 60": "did you mean --theta?",
     "cover roof --theta=60 --quad=9": "did you mean --quads?",
     "web -q 3": "web has no option -q: ",
@@ -327,7 +330,9 @@ def test_bad_files_are_refused_by_name(inet, name):
     assert list(Path().iterdir()) == before
 
 
-@pytest.mark.parametrize("value", ["0", "180", "-60", "240", "nan", "inf", "right"])
+@pytest.mark.parametrize(
+    "value", ["0", "1e-9", "179.999", "180", "-60", "240", "nan", "inf", "right"]
+)
 @pytest.mark.parametrize("name", ["--theta", "--theta0"])
 def test_angles_lie_between_0_and_180(inet, name, value):
     words = ["web", "--profile", "vase", *ANGLES, "-m", 12, "-o", "a.obj", f"{name}={value}"]
@@ -460,7 +465,7 @@ def test_surfaces_are_repaired_and_it_is_said_or_refused(inet):
     V, F = examples.wavy_roof(15)
     words = *ANGLES, "--quads", 80, "-o", "a.obj"
     io.write("two roofs.ply", np.concatenate([V, V + 9]), np.concatenate([F, F[9:] + len(V)]))
-    assert refused(inet("cover", "two roofs.ply", *words), "2 separate pieces")
+    assert refused(inet("cover", "two roofs.ply", *words), "--piece 1 or --largest")
     assert refused(
         inet("cover", "two roofs.ply", *words, "--piece", 7), "piece 7: the surface has 2"
     )
@@ -537,7 +542,8 @@ def test_explore_and_show_serve_what_is_sound_and_tell_the_address(inet, web, mo
     (*none, net) = served.pop()
     assert none == [None, "web.obj", None] and np.array_equal(net[1], io.net(web).Q)
     io.write("two.obj", np.concatenate([V, V + 9]), np.concatenate([F, F + len(V)]))
-    assert refused(inet("explore", "two.obj"), "separate pieces") and not served
+    assert refused(inet("explore", "two.obj"), "two.obj: the surface has 2 separate pieces")
+    assert not served
 
 
 FAKE = """

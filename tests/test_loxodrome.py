@@ -64,7 +64,7 @@ def test_500_random_exact_webs_keep_their_angles_or_do_not_fit(profile):
         try:
             net = loxodrome.web(profile, theta, theta0, m, n=4)
         except ValueError as error:
-            assert "does not fit" in str(error)
+            assert "not one row" in str(error)
             continue
         built += 1
         assert deviation(net, theta, theta0).max() / DEG < 1e-9
@@ -130,7 +130,7 @@ def test_reflection_scaling_and_parameter_change_nothing_and_cylinders_have_cong
 
 def test_rows_end_where_the_radius_changes_too_fast_and_missing_ones_are_announced():
     disk = Profile(lambda t: 1 + t, lambda t: 0 * t, 0, 1000)
-    with pytest.raises(ValueError, match="does not fit: no such quad stands on t = 0"):
+    with pytest.raises(ValueError, match="no quad with these angles stands where the radius is 1"):
         loxodrome.web(disk, 128 * DEG, 94 * DEG, 4)
     net = loxodrome.web(disk, 128 * DEG, 94 * DEG, 8, n=2)
     assert net.rows == 2 and deviation(net, 128 * DEG, 94 * DEG).max() < 1e-12
@@ -138,7 +138,7 @@ def test_rows_end_where_the_radius_changes_too_fast_and_missing_ones_are_announc
         net = loxodrome.web(SPHERE, 60 * DEG, 45 * DEG, 24, n=100, method=method)
         assert net.rows == 26
         assert net.message.startswith("26 of 100 rows of 24 quads: a further one does not fit")
-        assert net.message.endswith("t = 1.2")
+        assert net.message.endswith("the profile is too short")
 
 
 def test_numbering_labels_orientation_and_families():
@@ -429,7 +429,7 @@ WRONG = [
     (loxodrome.loxodrome, (SPHERE, 1, np.nan), "angle = nan"),
     (loxodrome.loxodrome, (SPHERE, 1, 0, 1), "samples = 1"),
     (loxodrome.closings, (2, 1, 1, 1, 2), "limit = 2"),
-    (loxodrome.web, (THIN, 1, 1, 12, 2), "not one row of 12 quads.*no such quad stands on t = 0"),
+    (loxodrome.web, (THIN, 1, 1, 12, 2), "not one row of 12 quads fits, no quad with these"),
     (loxodrome.torus_web, (2, 1.9, 4, 3, 40), "theta|torus"),
     (loxodrome.torus_web, (2.9, 0.9, 5, 3, -11), "shift = -11: the rows do not fit on the torus"),
     (loxodrome.torus_web, (1.7, 1.1, 11, 3, -10), "no closed web .*: take more quads"),
@@ -464,7 +464,7 @@ def test_a_last_row_that_fits_up_to_rounding_fits(method, size):
         shorter = profile._replace(stop=five.t[-1] * (1 + ulps * 2**-52))
         net = loxodrome.web(shorter, 1.2, 1.0, 24, None, *method)
         assert net.rows == 5
-        assert "the meridian ends" in net.message
+        assert "the profile is too short" in net.message
         np.testing.assert_allclose(net.V, five.V, atol=size * 1e-9)
     almost = profile._replace(stop=five.t[-1] * (1 - 1e-6))
     assert loxodrome.web(almost, 1.2, 1.0, 24, None, *method).rows == 4

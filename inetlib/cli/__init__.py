@@ -4,7 +4,6 @@ Wrong input becomes one sentence, before the work begins and anything slow is lo
 written after all went well."""
 
 import argparse
-import difflib
 import os
 import re
 import sys
@@ -12,7 +11,7 @@ import warnings
 
 from .. import __version__, files
 from . import completion, looks, nets, project
-from .options import tell
+from .options import nearest, tell
 
 DONE, WRONG, STOPPED = 0, 2, 130
 ABOUT = """\
@@ -105,7 +104,9 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         top, known = parsers(words)
         misspelt(words, top, known)
-        given = top.parse_args(words or ["--help"])
+        given, more = top.parse_known_args(words or ["--help"])
+        if more:
+            known[given.command].error(f"{more[0]} is a word too many (quote names with spaces)")
     except SystemExit as end:  # help, the version, or a mistake that was already told
         return end.code
     written = len(files.WRITTEN)
@@ -160,19 +161,14 @@ def misspelt(words: list[str], top: Parser, known: dict[str, Parser]) -> None:
     """End with the nearest name where the command or one of its options has another."""
     name, *rest = words if words and not words[0].startswith("-") else ["inet", *words]
     if name != "inet" and name not in known:
-        top.error(f"there is no command {name}: {_nearest(name, known, 'there are')}")
+        top.error(f"there is no command {name}: {nearest(name, known)}")
     command = known.get(name, top)
     options = completion.options(command)
     for word in rest[: rest.index("--")] if "--" in rest else rest:
         option = word.split("=")[0]
         if re.match(r"-[^\d.]", word) and not {option, word[:2]} & {*options}:
-            instead = INSTEAD.get(option) or _nearest(option, options, "there are")
+            instead = INSTEAD.get(option) or nearest(option, options)
             command.error(f"{name} has no option {option}: {instead}")
-
-
-def _nearest(name, names, otherwise):
-    found = difflib.get_close_matches(name, [*names], 1, 0.5)
-    return f"did you mean {found[0]}?" if found else f"{otherwise} {', '.join(names)}"
 
 
 def _completion_options(command):

@@ -66,13 +66,14 @@ def _explore_options(command):
 def _explore(given):
     surface, query = None, ""
     if given.surface:
-        from .. import examples, repair
+        from .. import examples, io, repair
 
         if given.surface in examples.SURFACES:
             query = f"?kind=cover&source={given.surface}"
         else:
             surface = options.surface(given)
-            repair.clean(surface.V, surface.F)  # refuses what cannot be covered
+            with io.named(given.surface, surface.V, counted=False):
+                repair.clean(surface.V, surface.F)  # refuses what cannot be covered
     _serve(given, surface, given.surface if surface else None, query)
 
 

@@ -146,8 +146,8 @@ def _profile(name):
     if name in surfaces.PROFILES:
         return surfaces.PROFILES[name]()
     if not Path(name).is_file():
-        known = ", ".join(surfaces.PROFILES)
-        raise ValueError(f"--profile {name}: neither {known} nor a file that is there")
+        known = options.nearest(name, surfaces.PROFILES)
+        raise ValueError(f"--profile {name} is no file, and no profile: {known}")
     rows = []
     lines = Path(name).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     for k, line in enumerate(map(str.strip, lines), 1):
@@ -311,7 +311,9 @@ def _finish(given, V, Q, polygons, about, notes, more, edges=None):
     if good:
         return None
     what = "this net was written" if written else "nothing was written, --keep does it"
-    return options.tell(f"{more['message']}; {what}", NOT_FOUND)
+    may = {"cover": "more --quads or another --direction", "optimize": "another --via"}
+    words = f"{more['message']}; {what} ({may[given.command]} may do better)"
+    return options.tell(words, NOT_FOUND)
 
 
 def _say(given, about, file, notes, **more):

@@ -2,10 +2,12 @@
 
 import argparse
 import contextlib
+import difflib
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 DEGREE = "\u00b0"
@@ -33,7 +35,7 @@ def _degrees(text):
 
 
 angle = _number(
-    f"an angle above 0 and below 180 degrees, {LEAST} or more from both,",
+    f"an angle above 0 and below 180 degrees (from {LEAST} to {180 - LEAST})",
     lambda x: LEAST <= x <= 180 - LEAST,
     math.radians,
     _degrees,
@@ -105,10 +107,14 @@ def surface(given: argparse.Namespace, merge: bool = True) -> Any:
     """(V, F, sentences on what was repaired) of the surface that is named: an example or a file."""
     from .. import examples, io
 
-    with stage(given, f"reading {given.surface}"):
-        if given.surface in examples.SURFACES:
+    if given.surface in examples.SURFACES:
+        with stage(given, f"making {given.surface}"):
             return io.Surface(*examples.SURFACES[given.surface](), [])
-        return io.surface(given.surface, merge)
+    name = given.surface
+    if not (Path(name).suffix or Path(name).exists()):
+        raise ValueError(f"{name} is no file, and no example: {nearest(name, examples.SURFACES)}")
+    with stage(given, f"reading {name}"):
+        return io.surface(name, merge)
 
 
 def put(given: argparse.Namespace, known: dict, text: Callable[[], str]) -> None:
@@ -117,6 +123,12 @@ def put(given: argparse.Namespace, known: dict, text: Callable[[], str]) -> None
         print(json.dumps(known, indent=2, allow_nan=False))
     elif not given.quiet:
         print(text())
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """The name that may be meant, or all there are."""
+    found = difflib.get_close_matches(name, [*names], 1, 0.5)
+    return f"did you mean {found[0]}?" if found else f"there are {', '.join(names)}"
 
 
 def tell(words: object, code: int) -> int:

@@ -89,7 +89,7 @@ def cover(
         layer = _layer(domain, *_fit(domain, 2 * size / (1 + 1 / mu) * turn, rho))
     if layer is None:
         wanted = f"count = {count}" if size is None else f"size = {size:.6g}"
-        raise ValueError(f"{wanted}: not one whole quad of that size fits on the surface")
+        raise ValueError(f"{wanted}: not one whole quad fits on the surface, ask for smaller ones")
     return layer
 
 
@@ -191,7 +191,9 @@ def points(domain: Domain, u: complex, v: complex) -> tuple[np.ndarray, np.ndarr
     low, high = np.floor(ij.min(axis=1)), np.ceil(ij.max(axis=1)) + 1
     number = np.prod(high - low)
     if number > MOST:
-        raise ValueError(f"{number:.3g} grid points are too many: ask for fewer or larger quads")
+        raise ValueError(
+            f"{number:.3g} grid points are too many: ask for fewer quads, or less extreme angles"
+        )
     i, j = (np.arange(a, b, dtype=np.int64) for a, b in zip(low, high, strict=True))
     return np.repeat(i, len(j)), np.tile(j, len(i))
 

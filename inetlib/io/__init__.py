@@ -79,9 +79,11 @@ def _read(path):
     known = _format(path, READERS, "read")
     with named(path), np.errstate(all="ignore"):
         if not path.is_file():
-            raise ValueError("a directory, no file" if path.is_dir() else "there is no such file")
+            raise ValueError(
+                "a directory: name a file in it" if path.is_dir() else "there is no such file"
+            )
         if not path.stat().st_size:
-            raise ValueError("the file is empty")
+            raise ValueError("the file is empty: export it again")
         with open(path, "rb") as file:
             if file.read(26) == b"version https://git-lfs.gi":
                 raise ValueError("a pointer of Git LFS, not the file itself: run `git lfs pull`")
@@ -120,7 +122,10 @@ def net(path: str | Path) -> Net:
         Q = np.array([face for face, yes in zip(F, whole, strict=True) if yes], dtype=np.int64)
         others = [np.array(face) for face, yes in zip(F, whole, strict=True) if not yes]
     if not len(Q) or Q.shape[1] != 4:
-        raise ValueError(f"{path} holds {'polygons' if others else 'triangles'}: quads are wanted")
+        what = "polygons" if others else "triangles"
+        raise ValueError(
+            f"{path} holds {what}: quads are wanted (inet cover makes a net of such a surface)"
+        )
     with named(path, V):
         return Net(*mesh.check_arrays(V, Q), others)
 
@@ -129,10 +134,13 @@ def _checked(V, F):
     """Finite float64 points and faces that name them."""
     V = np.asarray(V, dtype=np.float64).reshape(-1, 3)
     if not len(F):
-        raise ValueError("the file has no faces")
+        raise ValueError("the file has no faces: export a mesh, not points or curves")
     far = np.flatnonzero(~(np.abs(V) < TOO_FAR).all(axis=1))  # NaN too
     if far.size:
-        raise mesh.Fault("vertex {} has a coordinate that is no usable number", far[0])
+        raise mesh.Fault(
+            "vertex {} has a coordinate that is no usable number: export the mesh again without it",
+            far[0],
+        )
     sizes = {len(face) for face in F}
     if min(sizes) < 3:
         raise ValueError("a face has fewer than three corners")

@@ -37,10 +37,10 @@ def read_glb(path: Path) -> tuple[np.ndarray, np.ndarray]:
             raise ValueError(f"it needs the extensions {', '.join(needed)}, {words}")
         parts = [*_parts(scene, buffers, _roots(scene), np.eye(4))]
     except (LookupError, TypeError, ValueError, RecursionError, MemoryError) as error:
-        words = f"{type(error).__name__}: {error}"
+        words = f"it has no {error}" if isinstance(error, KeyError) else error
         raise ValueError(f"no glTF file, or a broken one ({words})") from error
     if not parts:
-        raise ValueError("the file has no faces")
+        raise ValueError("the file has no faces: export a mesh, not points or curves")
     points, faces = zip(*parts, strict=True)
     shifts = np.cumsum([0, *map(len, points[:-1])])
     return np.concatenate(points) @ Y_UP, np.concatenate([*map(np.add, faces, shifts)])

@@ -82,7 +82,9 @@ def prepare(
     boundary = _boundary(Q, polygons)
     mobility = _mobility(mobility, fixed, boundary, len(V))
     if on_surface and reference is None:
-        raise ValueError("on_surface=True needs a reference surface")
+        raise ValueError(
+            "on_surface=True needs a reference surface (--on-surface: --reference FILE)"
+        )
     if reference is not None:
         some = V[:: 1 + len(V) // SOME]
         apart = np.linalg.norm(some - reference.closest(some)[0], axis=1).mean()
