@@ -1,6 +1,7 @@
 """Touching the net in a real browser: hover, tap, keys, undo (Chromium; else skipped)."""
 
 import os
+import re
 import signal
 
 import numpy as np
@@ -165,3 +166,34 @@ def test_undo_and_redo_by_button_and_keys(reader):
     field.press("Control+z")  # that of the field
     reader.settled()
     assert reader.choice().m == 9
+
+
+def test_a_net_is_kept_as_a_ghost_with_its_numbers_until_it_is_removed(reader):
+    go(reader, "kind=plane&map=square&theta=60&theta0=60&m=8&n=10")
+    plain = reader.picture()
+    reader.page.locator(".in-keep").click()
+    reader.type("theta0", 100)
+    assert reader.text(".out-ghost-theta0") == "60\u00b0"
+    assert reader.text(".out-numbers-theta0") == "100\u00b0"
+    assert reader.text(".out-ghost-quads") == "80"
+    with_ghost = reader.picture()
+    reader.page.locator(".in-forget").click()
+    reader.settled()
+    assert reader.page.locator(".out-ghost").count() == 0
+    alone = reader.picture()
+    grey = (np.ptp(with_ghost, axis=2) < 12) & (np.abs(with_ghost - alone).sum(axis=2) > 60)
+    assert grey.mean() > 0.005  # its lines were there
+    reader.type("theta0", 60)
+    assert np.abs(reader.picture() - plain).mean() < 0.5
+
+
+def test_the_surface_is_seen_below_a_cover_unless_it_is_switched_off(reader):
+    go(reader, "kind=cover&quads=60")
+    seen = [reader.picture()]
+    assert re.fullmatch(r"[\d.]+ %", reader.text(".out-covered"))
+    assert reader.text(".out-distance").endswith(" %")
+    reader.page.locator(".in-target input").uncheck()
+    reader.settled()
+    seen.append(reader.picture())
+    full, bare = ((np.abs(x - x[-5, 5]).sum(axis=-1) > 12).mean() for x in seen)
+    assert full > 1.1 * bare and not reader.choice().target

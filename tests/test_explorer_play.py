@@ -3,11 +3,13 @@
 import re
 from dataclasses import replace
 
+import igl
 import numpy as np
 import pytest
+import pyvista
 
-from inetlib import measure, mesh
-from inetlib.explorer import look, plates, probe
+from inetlib import design, examples, io, measure, mesh
+from inetlib.explorer import behind, look, plates, probe
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.history import MOST, History
 from inetlib.explorer.session import Session
@@ -137,3 +139,60 @@ def test_undo_and_redo_go_through_the_choices_and_a_drag_is_one():
     for k in range(300):
         past.take(replace(first, theta=1.0 + k % 2), 100.0 + 10 * k)
     assert len(past.past) == MOST
+
+
+def covered(**values):
+    found = Session()
+    assert found.change(kind="cover", quads=60, **values) == []
+    found.search(found.begin())
+    return found
+
+
+def test_a_cover_has_its_surface_below_it_and_says_how_much_it_covers_and_how_near():
+    net = covered()
+    V, F = examples.wavy_roof()
+    assert net.target.n_cells == len(F) and np.allclose(net.target.points, V, atol=1e-6)
+    said = plates.numbers(net.report, net.V, net.Q)
+    part = 100 * design.report.area_of(net.V, net.Q) / design.report.area_of(V, F)
+    assert float(said["covered"]) == pytest.approx(part, abs=0.06)
+    squares, _, _ = igl.point_mesh_squared_distance(net.V, V, F)
+    off = 100 * np.sqrt(squares) / np.linalg.norm(np.ptp(V, axis=0))
+    for name, found in (("distance", off.max()), ("distance_mean", off.mean())):
+        shown = float(said[name].replace("\u2212", "-"))
+        assert shown == pytest.approx(found, rel=0.06, abs=1e-12)
+    net.change(kind="plane")
+    net.construct()
+    assert net.target is None
+    assert plates.numbers(net.report, net.V, net.Q)["covered"] == ""
+
+
+def test_a_large_surface_is_shown_with_fewer_triangles_and_a_broken_one_not_at_all():
+    V, F = examples.wavy_roof(200)
+    few = behind.few(V, F)
+    assert len(F) > behind.MOST > few.n_cells > 5000
+    squares, _, _ = igl.point_mesh_squared_distance(few.points.astype(float), V, F)
+    assert np.sqrt(squares.max()) < 1 / behind.BINS * np.ptp(V, axis=0).max()
+    broken = Session(io.Surface(V[:3] * np.nan, np.array([[0, 1, 2]]), []), "x.obj")
+    broken.search(broken.begin())
+    assert broken.target is None and broken.problem and broken.V is None
+
+
+def test_the_surface_and_the_ghost_are_sent_when_they_change_and_leave_nothing():
+    net, other = covered(), built(m=4, n=3)
+    plotter = pyvista.Plotter(off_screen=True)
+    shown = behind.Behind(plotter)
+    origin = np.zeros(3)
+
+    def show(*what):
+        before = shown.surface.GetMTime(), shown.ghost.GetMTime()
+        shown.show(*what, origin, look.LIGHT)
+        return (shown.surface.GetMTime(), shown.ghost.GetMTime()) != before
+
+    ghost = other.V, other.Q
+    assert show(net.target, ghost) and not show(net.target, ghost)
+    assert shown.surface.n_cells == net.target.n_cells
+    assert shown.ghost.n_cells == 4 * 4 + 5 * 3  # each edge once
+    assert np.allclose(shown.ghost.points, other.V, atol=1e-6)
+    assert show(None, None)
+    assert shown.surface.n_points == shown.ghost.n_points == 1
+    plotter.close()

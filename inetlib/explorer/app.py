@@ -132,7 +132,7 @@ class App:
         if V is not None and sight is not None:
             grows = self.session.run is not None and self.session.choice.trim  # in the end
             self.sight, self.fitted = sight, None if grows else V
-            self.view.push_camera(self.scene.camera(V, *sight, self.aspect))
+            self.view.push_camera(self.scene.camera(self.play.extent(), *sight, self.aspect))
 
     def _soon(self, remake):
         """Show the net when the changes that are waiting have come; remake: make it first."""
@@ -200,6 +200,7 @@ class App:
             return
         shade, state.legend = session.shading()
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade, session.cover)
+        self.play.compare()
         self.view.update()
         if self.fitted is None:
             self.look("fit")

@@ -122,6 +122,7 @@ class Choice:
     families: tuple = _of(FAMILIES, ("u", "v"))
     parallelograms: bool = _of(SWITCH, False)
     shade: str = _of(OPTIONS["shade"], "none")
+    target: bool = _of(SWITCH, True)
 
 
 ALLOWED = {f.name: f.metadata["allowed"] for f in fields(Choice)}
@@ -133,7 +134,7 @@ USES = {  # of each kind, besides the angles and what is shown
     "freeform": ("m", "n"),
     "cover": ("source", "quads", "direction", "openings", "trim"),
 }
-SHOWN = "families", "parallelograms", "shade"
+SHOWN = "families", "parallelograms", "shade", "target"
 
 
 def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:

@@ -113,8 +113,8 @@ def _isothermal(name, inverted):
 
 
 def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
-    """V (n, 3), Q (f, 4) of a choice, a sentence on the net, and None or its `design.Cover`, if
-    that has panels cut at the edge; ValueError where there is none.
+    """V (n, 3), Q (f, 4) of a choice, a sentence on the net, and its `design.Cover`, or None where
+    it covers no surface; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
     (step None) and every step, and may return False to end it."""
@@ -138,7 +138,14 @@ def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
     covers = choice.kind == "cover"
     more = (*net.report.notes, *net.report.repairs) if covers else ()
     words = "; ".join([recipe.message.format(net), *more])
-    return names["V"], names["Q"], words, net if covers and net.polygons else None
+    return names["V"], names["Q"], words, net if covers else None
+
+
+def target(choice: Choice, surface=None) -> tuple | None:
+    """V, F of the surface that a cover covers, None where there is none; surface: of `make`."""
+    if choice.source == "file":
+        return surface and surface[:2]
+    return examples.SURFACES[choice.source]()[:2]
 
 
 def has_one_hole(source: str, surface=None) -> bool:

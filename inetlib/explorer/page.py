@@ -99,7 +99,7 @@ def _controls(given):
         for name, condition in (("px", pole), ("py", pole), ("pz", inverted)):
             _number(name, f"pole {name[1]}", condition)
         _profile()
-    _shown()
+    _shown(given)
 
 
 def _select(name, label, condition="true"):
@@ -154,7 +154,7 @@ def _profile():
                         _field(label, change=new % "$event.target.value", **value)
 
 
-def _shown():
+def _shown(given):
     html.H2("Show")
     with html.Div(style="display: grid; grid-template-columns: 1fr 1fr"):
         for name in choices.FAMILIES:
@@ -172,6 +172,7 @@ def _shown():
         html.Span("{{ step[1] }}")
     html.Div(SIZES, v_show="shade == 'size'", classes="ex-note")
     html.Div(PLANARITY, v_show="shade == 'planarity'", classes="ex-note")
+    widgets.beside(given)
 
 
 def _numbers():
@@ -206,6 +207,8 @@ def _numbers():
         with html.Tr():
             html.Td("medial lines")
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
+        widgets.covered()
+    widgets.compared()
     words = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "
     words += "\u03b8\u2080 = {{ numbers.theta0 }}\u00b0"
     html.Div(words, v_show="problem", classes="ex-note ex-warning")

@@ -3,7 +3,9 @@
 import time
 from typing import Any
 
-from . import plates, probe
+import numpy as np
+
+from . import look, plates, probe
 from .history import History, differing
 
 
@@ -13,8 +15,9 @@ class Play:
     def __init__(self, app: Any):
         self.app, self.history = app, History(app.session.choice)
         self.face = None  # the number of the face that is touched
-        app.state.update({"face": {}, "can_undo": False, "can_redo": False})
-        for call in (self.touch, self.undo, self.redo):
+        self.ghost = None  # V, Q of a net that is kept
+        app.state.update({"face": {}, "ghost": {}, "can_undo": False, "can_redo": False})
+        for call in (self.touch, self.undo, self.redo, self.keep, self.forget):
             app.server.trigger(call.__name__)(call)
 
     def begin(self):
@@ -44,6 +47,32 @@ class Play:
         self.app.session.choice = choice
         self.app.follow(names)
         self._offer()
+
+    def keep(self):
+        """Keep the net as a ghost beside those that follow."""
+        if self.app.session.V is not None:
+            self.ghost = self.app.session.V, self.app.session.Q
+            self.app.state.ghost = dict(self.app.state.numbers)
+            self.app.follow(set())
+
+    def forget(self):
+        """Remove the ghost."""
+        self.ghost, self.app.state.ghost = None, {}
+        self.app.follow(set())
+
+    def compare(self):
+        """Put the surface that is covered, and the ghost, into the scene."""
+        app, palette = self.app, look.DARK if self.app.state.dark else look.LIGHT
+        app.scene.behind.show(self._surface(), self.ghost, app.scene.origin, palette)
+
+    def _surface(self):
+        session = self.app.session
+        return session.target if session.choice.target else None
+
+    def extent(self):
+        """The points that shall be seen: of the net, and of the surface below it."""
+        surface, V = self._surface(), self.app.session.V
+        return V if surface is None else np.concatenate([V, surface.points])
 
     def touch(self, how: str, camera: dict | None = None, x: float = 0, y: float = 0):
         """Show a face: the one "at" x, y of the camera (`probe.seen`), in the "middle" of it, the

@@ -5,6 +5,7 @@ from matplotlib.colors import to_rgb
 
 from .. import view
 from . import look
+from .behind import Behind
 
 STRETCH = 1.8  # a net that grew or shrank more than this is fitted into the view again
 FAR = 20  # sizes from the origin: such a net is drawn about its own middle
@@ -21,6 +22,7 @@ class Scene:
         self.plotter = pyvista.Plotter(off_screen=True, lighting=None)
         self.plotter.add_light(pyvista.Light(light_type="headlight"))
         self.faces, self.curves = pyvista.PolyData(), pyvista.PolyData()
+        self.behind = Behind(self.plotter)
         self.clear()
         colours = {"scalars": "rgb", "rgb": True}
         solid = self.plotter.add_mesh(self.faces, ambient=0.35, diffuse=0.7, **colours)
@@ -33,6 +35,7 @@ class Scene:
     def clear(self):
         """Hold nothing that can be seen: one point."""
         self._known = self._layout = None
+        self.behind.clear()
         self.origin = np.zeros(3)  # of the scene: float32 has no digits to spare far away
         self.faces.points = self.curves.points = np.zeros((1, 3), np.float32)
         self._cells([3, 0, 0, 0], [2, 0, 0], *np.zeros((2, 1, 3), np.uint8))

@@ -2,6 +2,7 @@
 
 import tempfile
 import threading
+from contextlib import suppress
 from math import radians
 from pathlib import Path
 from types import SimpleNamespace
@@ -10,7 +11,7 @@ import numpy as np
 
 from .. import io, measure, mesh, plot
 from ..design import report
-from . import choices, look, nets
+from . import behind, choices, look, nets
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
 
@@ -29,6 +30,7 @@ class Session:
         self.V = self.Q = self.cover = self.report = self.run = None
         self.message, self.problem, self.steps = "", "", 0
         self._pierced = {}  # surfaces by name: whether they have one hole
+        self._targets = {}  # and what is shown of them
         self._lock = threading.Lock()  # a search ends in its own thread
         if surface is not None:
             self.change(kind="cover", source="file")
@@ -72,8 +74,8 @@ class Session:
         try:
             V, Q, message, cover = make(choice, *known)
             theta, theta0 = np.radians([choice.theta, choice.theta0])
-            polygons = cover.polygons if cover else ()
-            about = report.report(V, Q, polygons, theta=theta, theta0=theta0)
+            about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
+            cover = cover if cover and cover.polygons else None
         except (ValueError, ArithmeticError, MemoryError) as error:
             problem = f"no net: {error or type(error).__name__}"
         with self._lock:
@@ -107,11 +109,23 @@ class Session:
                 seen(V, Q, self.steps)
             return not run.stopped
 
+        self._see(run.choice)
         self._settle(run, None, nets.make, self.surface, after)
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
         return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}", None))
+
+    @property
+    def target(self):
+        """The surface that the choice covers, as `behind.few` has it; None before a search."""
+        return self._targets.get(self.choice.kind == "cover" and self.choice.source)
+
+    def _see(self, choice):
+        if choice.kind == "cover" and choice.source not in self._targets:
+            with suppress(ValueError):  # the search says what is wrong
+                surface = nets.target(choice, self.surface)
+                self._targets[choice.source] = surface and behind.few(*surface)
 
     @property
     def angles(self):

@@ -76,6 +76,7 @@ Object.assign(window.inet, {
   },
   draw() {
     const view = document.querySelector(".ex-view");
+    if (!view) return false; // the page is going
     const svg = view.querySelector(".ex-touch") ?? view.appendChild(document.createElementNS("http://www.w3.org/2000/svg", "svg"));
     svg.setAttribute("class", "ex-touch");
     if (!this.quad) {
