@@ -115,9 +115,9 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)
     medial = np.linalg.norm(measure.vectors(V, Q)[2:], axis=2)
-    over = about.covered is not None
+    over = {} if about.covered is None else _covering(about)
     quads, cut = (f"{x:,}".replace(",", "\u2009") for x in (about.quads, len(about.polygons)))
-    return {
+    return over | {
         "quads": quads,
         "cut": cut,
         "lam": f"{lam:.5g}",
@@ -130,11 +130,17 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
         "darts": str(about.darts),
         "size_low": short(medial.min(), 3),
         "size_high": short(medial.max(), 3),
-        "covered": f"{100 * about.covered:.3g}" if over else "",
-        "distance": short(100 * about.distance_max) if over else "",
-        "distance_mean": short(100 * about.distance_mean) if over else "",
         "theta": f"{np.degrees(theta):.10g}",
         "theta0": f"{np.degrees(theta0):.10g}",
+    }
+
+
+def _covering(about):
+    """How well a net covers its surface, in percent of its area and its diagonal."""
+    return {
+        "covered": f"{100 * about.covered:.3g}",
+        "distance": short(100 * about.distance_max),
+        "distance_mean": short(100 * about.distance_mean),
     }
 
 
