@@ -1,6 +1,7 @@
 """The command line, as a user meets it: exit codes, one sentence for a mistake, no damage."""
 
 import json
+import re
 import shlex
 import shutil
 import subprocess
@@ -493,6 +494,18 @@ def test_a_reader_that_goes_away_is_no_mistake(inet, web):
     assert process.returncode == 0
 
 
+def test_the_stages_are_told_where_somebody_looks_on(inet, monkeypatch):
+    io.write("roof.obj", *examples.wavy_roof(12))
+    words = "cover", "roof.obj", *ANGLES, "--quads", 60, "-o", "a.obj", "--force"
+    assert inet(*words)[2] == ""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    code, _, err = inet(*words)
+    stages = "reading roof.obj", "checking", "flattening", "laying", "optimising", "measuring"
+    places = [err.find(stage) for stage in stages]
+    assert code == 0 and -1 not in places and places == sorted(places)
+    assert inet(*words, "--quiet") == (0, "", "")
+
+
 ERRORS = [
     (MemoryError(), "there is not enough memory for this: ask for fewer quads"),
     (PermissionError(13, "Permission denied", "jar.csv"), "jar.csv: Permission denied"),
@@ -580,6 +593,37 @@ def test_figures_runs_each_notebook_once_and_names_its_target(inet, monkeypatch,
             known = {"folder": str(tmp_path), "notebooks": names, "written": ["fig01"]}
             assert how != "--json" or json.loads(out) == known
     monkeypatch.delitem(sys.modules, "redraw")
+
+
+SAID = {
+    "web": "--profile vase --theta 75 --theta0 60 -m 24 -n 4 -o net.obj --planar-report 0.01",
+    "cover": "roof.obj --theta 60 --theta0 60 --quads 60 --trim -o a.obj --planar-report 0.01",
+    "optimize": "net.obj --theta 80 --theta0 70 --reference net.obj -o b.obj --planar-report 1",
+    "measure": "net.obj --planar-report 0.01",
+    "schedule": "net.obj -o panels.csv",
+    "show": "net.obj -o net.svg",
+    "course": "grade .",
+    "examples": "",
+}
+
+
+def test_the_readme_documents_what_json_says(inet):
+    table = (project.ROOT / "README.md").read_text(encoding="utf-8").partition("| field | of |")[2]
+    rows = re.findall(r"^\| (`.*`) \| ([a-z, ]+) \| .+ \|$", table, re.M)
+    documented = {name: set() for name in [*SAID, "figures", "explore"]}
+    for fields, commands in rows:
+        for name in commands.split(", "):
+            documented[name] |= set(re.findall(r"`(\w+)`", fields))
+    assert documented.pop("figures") == {"folder", "notebooks", "written"}  # as tested above
+    assert documented.pop("explore") == {"address"} <= documented["show"]
+    documented["show"].remove("address")
+    io.write("roof.obj", *examples.wavy_roof(12))
+    Path("a.ipynb").write_text('{"nbformat": 4, "cells": []}')
+    for name, line in SAID.items():
+        found = numbers(inet(name, *line.split(), "--json"))
+        assert {*found} == documented[name], name
+        for row in found["notebooks"] if name == "course" else []:
+            assert {*row} == {"file", "grades", "word", "right"}
 
 
 @pytest.mark.parametrize("suffix", io.PACKAGES)

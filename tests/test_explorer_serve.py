@@ -851,8 +851,11 @@ def test_fifty_tabs_with_five_hundred_changes_are_forgotten(serve, capsys):
         print(words)
 
 
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
-def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name):
+@pytest.mark.parametrize(
+    ("name", "net", "page"),
+    [("SIGTERM", None, ""), ("SIGINT", surfaces.freeform_patch(2, 2), "net/file/index.html")],
+)
+def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name, net, page):
     number, addresses = getattr(signal, name), []
 
     def unheard(*_):
@@ -864,11 +867,11 @@ def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name):
 
     before = signal.signal(number, unheard)
     try:
-        serve.serve(port=0, ready=ready)
+        serve.serve(port=0, ready=ready, net=net)
     finally:
         signal.signal(number, before)
     (address,) = addresses
-    assert re.fullmatch(rf"http://{HOST}:\d+/[\w-]{{22}}/", address)
+    assert re.fullmatch(rf"http://{HOST}:\d+/[\w-]{{22}}/{page}", address)
     with pytest.raises(OSError):
         socket.create_connection((HOST, urlsplit(address).port), timeout=LIMIT)
 

@@ -31,6 +31,7 @@ ATTEMPTS = (  # the first good one is taken: on the surface, or near it
 COARSE = 1000  # triangles: a surface with fewer is divided before it is flattened
 FINE = 1e-3  # radians: a net on the surface that is this close is finished in space
 GROWN = 1.5  # of the area: a net that grows or shrinks more has folded or collapsed
+STAGES = {"check": "checking", "flatten": "flattening", "grid": "laying", "report": "measuring"}
 AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcome
 
 
@@ -167,8 +168,8 @@ def _flatten(surface, filled, boundary):
 @contextmanager
 def _stage(seconds, progress, name):
     """A stage of the way, named by a bar while it lasts."""
-    bar = tqdm(desc=name, bar_format="{desc} ... {elapsed}", leave=False, disable=not progress)
-    with timed(seconds, name), bar:
+    look = {"bar_format": "{desc} ... {elapsed}", "leave": False, "disable": not progress}
+    with timed(seconds, name), tqdm(desc=STAGES[name], **look):
         yield
 
 

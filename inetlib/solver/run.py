@@ -274,7 +274,7 @@ class Log:
         self.history: list[Step] = []
         self.best = None
         self.stopped = False
-        self.bar = tqdm(disable=not progress, unit=" steps", desc="start")
+        self.bar = tqdm(disable=not progress, unit=" steps", desc="optimising")
         self.record("start", given.goal, given.V, None, 0.0)
 
     def record(self, kind, goal, V, s, size, residual=None):
@@ -297,7 +297,7 @@ class Log:
     def tell(self, step: Step, net: Callable, where: str = "") -> bool:
         """Note a step that led to net(), tell the caller, and return whether to go on."""
         self.history.append(step)
-        words = f"{step.kind} step{where}, {np.degrees(step.deviation):.2g} degrees off"
+        words = f"optimising: {step.kind} step{where}, {np.degrees(step.deviation):.2g} degrees off"
         self.bar.set_description_str(words)
         self.bar.update()
         if step.kind != "start" and self.callback is not None and not self.stopped:
