@@ -190,7 +190,8 @@ def _optimise(layer, theta, theta0, callback, ways):
         close = not result.converged and _deviation(result) < FINE
         if close and not stopped:  # facets keep the last digits off
             result = solver.optimize(result.V, layer.Q, theta, theta0, **common, **POLISH)
-        tried.append((_faults(result, layer.Q, area, goal), result))
+        on_it = options is ON and not close  # vertices stay on the surface
+        tried.append((_faults(result, layer.Q, area, None if on_it else goal), result))
         if stopped or tried[-1][0] <= (False, False, AWAY):
             break
     (folded, *_), result = min(tried, key=lambda attempt: attempt[0])
@@ -202,12 +203,13 @@ def _optimise(layer, theta, theta0, callback, ways):
 
 
 def _faults(result, Q, area, goal):
-    """(folded, not converged, how far off in space or else in angles): the smaller the better."""
+    """(folded, not converged, how far off in space or else in angles): the smaller the better.
+
+    goal: the `Reference`, None for a net that lies on it."""
     folded = not 1 / GROWN < area_of(result.V, Q) / area < GROWN
     if not result.converged:
         return folded, True, _deviation(result)
-    off = goal.distances(result.V).max()
-    return folded, False, off
+    return folded, False, 0.0 if goal is None else goal.distances(result.V).max()
 
 
 def _deviation(result):

@@ -117,7 +117,7 @@ def survey(
     back, rim = (np.sqrt(igl.point_mesh_squared_distance(goal.V, V, x)[0]) for x in (T, outline))
     above = back[rim > back + 1e-9 * goal.diagonal] / goal.diagonal  # not beside the net
     cut = sum(float(np.linalg.norm(panels.area_vectors(V[p][None]))) for p in polygons)
-    covered = (area_of(V, Q) + cut) / area_of(goal.V, goal.F)
+    covered = (float(igl.doublearea(V, fans[0]).sum() / 2) + cut) / area_of(goal.V, goal.F)
     notes, holes = [], len(mesh.boundary_loops(Q)) - len(mesh.boundary_loops(goal.F))
     scale_ratio = float(flat.scale.max() / flat.scale.min())
     gaps = holes > 0 or back.max() > FAR * net.edge_high

@@ -131,21 +131,12 @@ def optimize(
     asked |= dict(on_surface=on_surface, residual=residual, via=via, stride=stride)
     simple = ours and not (coupled or len(polygons)) and iterations is None and shape_steps
     with log.bar, np.errstate(all="ignore"):  # a run that diverges is found out by its judge
-        start = _refined(log, asked | {"shape_steps": shape_steps}) if simple else None
-        if start is not None and not log.stopped:
-            run.ratio(log, [wanted], 0, limit, None, start)
-        factors = run.STRIDES if ours and via != "jump" else run.STRIDES[:1]
-        ended = log.stopped or (start is not None and log.done)
-        for couple, factor in (
-            () if ended else _runs(log, factors, coupled, ours and not on_surface)
-        ):
-            goals = run.way(given, via, stride * factor)
-            if ours:
-                run.ratio(log, goals, shape_steps, limit, couple)
-            else:
-                guided.run(log, goals, limit, spsolve if formulation == "paper" else None)
-            if log.done or len(log.history) > limit:
-                break
+        if ours:
+            start = _refined(log, asked | {"shape_steps": shape_steps}) if simple else None
+            _by_steps(log, start, (via, stride), (shape_steps, limit), coupled, not on_surface)
+        else:
+            solve = spsolve if formulation == "paper" else None
+            guided.run(log, run.way(given, via, stride), limit, solve)
     result = _result(log, ours)
     if strict and not result.converged:
         raise NotConverged(result)
@@ -191,6 +182,22 @@ def _sides_alike(mask):
     """Whether a mask (m+1, n+1) is constant inside and along each side, but for the corners."""
     inside = mask[1:-1, 1:-1], mask[1:-1, 0], mask[1:-1, -1], mask[0, 1:-1], mask[-1, 1:-1]
     return all(part.all() or not part.any() for part in inside)
+
+
+def _by_steps(log, start, way, most, coupled, can_couple):
+    """Runs of `run.ratio`, the first from the net start if there is one, until one is good.
+
+    way: (via, stride), see `run.way`; most: numbers of shape steps and of all steps."""
+    (via, stride), (shape_steps, limit) = way, most
+    if start is not None and not log.stopped:
+        run.ratio(log, [log.given.goal], 0, limit, None, start)
+    if log.stopped or (start is not None and log.done):
+        return
+    factors = run.STRIDES if via != "jump" else run.STRIDES[:1]
+    for couple, factor in _runs(log, factors, coupled, can_couple):
+        run.ratio(log, run.way(log.given, via, stride * factor), shape_steps, limit, couple)
+        if log.done or len(log.history) > limit:
+            return
 
 
 def _runs(log, factors, coupled, can_couple):

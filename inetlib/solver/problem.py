@@ -77,7 +77,7 @@ def prepare(
         raise ValueError(f"{words} and the other faces as polygons=[...]")
     V, Q = mesh.check(V, Q)
     mesh.require_labels(Q)
-    measure.quality(V, Q)  # refuses collapsed faces
+    measure.planarity(V, Q)  # refuses collapsed faces
     weights = _checked_weights(weights or Weights(), len(V))
     boundary = _boundary(Q, polygons)
     mobility = _mobility(mobility, fixed, boundary, len(V))
