@@ -14,6 +14,7 @@ import types
 import warnings
 from contextlib import asynccontextmanager
 from dataclasses import asdict
+from functools import partial
 from itertools import product
 from urllib.parse import parse_qsl, urlencode, urljoin, urlsplit
 from urllib.request import ProxyHandler, build_opener
@@ -239,7 +240,7 @@ async def test_a_choice_without_a_net_is_explained_and_the_former_net_stays(app,
     await change(app, **values)
     await until(lambda: app.state.problem)
     assert app.state.problem.startswith("no net: ") and app.session.V is V
-    assert ("file" in app.state.problem) is ("source" in values)
+    assert ("no file" in app.state.problem) is ("source" in values)
     assert app.state.numbers == numbers and not app.state.searching
     await change(app, kind="plane", theta=70)
     await until(lambda: app.state.numbers["theta"] == "70")
@@ -882,7 +883,8 @@ def kernel(monkeypatch):
     monkeypatch.setattr(notebook, "_door", None)
     monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
-    monkeypatch.delenv("JUPYTERHUB_SERVICE_PREFIX", raising=False)
+    for name in ("JUPYTERHUB_SERVICE_PREFIX", "INETLIB_PROXY"):
+        monkeypatch.delenv(name, raising=False)
 
 
 @pytest.fixture
@@ -926,10 +928,11 @@ def test_a_live_net_is_a_page_with_the_picture_for_where_there_is_none(door):
     bundle = live._repr_mimebundle_()
     page = re.fullmatch(
         r'<object type="text/html" data="([^"]+)" style="([^"]+)">'
-        r'<img [^>]*src="data:image/png;base64,([^"]+)"[^>]*></object>',
+        r'<img [^>]*src="data:image/png;base64,([^"]+)"[^>]*><p>(.+)</p></object>',
         bundle["text/html"],
     )
     assert page[1] == live.address == bundle["text/plain"] and "height: 345px" in page[2]
+    assert f'run the cell again, or open <a href="{live.address}"' in page[4]
     assert base64.b64decode(page[3]) == base64.b64decode(bundle["image/png"])
     still = notebook.show(live=False, **values)
     assert base64.b64decode(bundle["image/png"]) == still.data
@@ -963,10 +966,18 @@ def test_a_given_net_has_a_page_of_its_own_with_the_families_that_have_curves(do
         notebook.turn(*PATCH, live=False)
 
 
-@pytest.mark.parametrize("prefix", ["/user/ada/", "/hub/user/bob%40x/lab/"])
-def test_under_a_hub_the_page_is_found_through_its_proxy(door, monkeypatch, prefix):
-    monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", prefix)
-    start = f"{prefix}proxy/{door.port}/abc/"
+@pytest.mark.parametrize(
+    ("name", "value", "prefix"),
+    [
+        ("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/", "/user/ada/proxy/"),
+        ("JUPYTERHUB_SERVICE_PREFIX", "/hub/user/bob%40x/lab/", "/hub/user/bob%40x/lab/proxy/"),
+        ("INETLIB_PROXY", "/proxy/", "/proxy/"),
+        ("INETLIB_PROXY", "/base/proxy", "/base/proxy/"),
+    ],
+)
+def test_behind_a_proxy_the_page_is_found_through_it(door, monkeypatch, name, value, prefix):
+    monkeypatch.setenv(name, value)
+    start = f"{prefix}{door.port}/abc/"
     live = notebook.show(live=True, m=4, n=4)
     assert live.address == f"{start}index.html?{choices.link(built(m=4, n=4).choice)}"
     given = notebook.turn(*PATCH, live=True)
@@ -984,8 +995,8 @@ def test_a_live_page_answers_from_a_server_of_the_process(serve, kernel):
             assert answer.status == 200 and b"<html" in answer.read().lower()
 
 
-@pytest.mark.parametrize("hub", [True, False])
-def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, kernel, monkeypatch, hub):
+@pytest.mark.parametrize("hub", ["JUPYTERHUB_SERVICE_PREFIX", "INETLIB_PROXY", ""])
+def test_the_server_of_the_process_is_guarded_unless_a_proxy_is(serve, kernel, monkeypatch, hub):
     doors = []
 
     class Door:
@@ -998,9 +1009,9 @@ def test_the_server_of_the_process_is_guarded_unless_a_hub_is(serve, kernel, mon
 
     monkeypatch.setattr(serve, "Door", Door)
     if hub:
-        monkeypatch.setenv("JUPYTERHUB_SERVICE_PREFIX", "/user/ada/")
+        monkeypatch.setenv(hub, "/user/ada/")
     assert notebook._open_door() is notebook._open_door() is doors[0]
-    assert len(doors) == 1 and doors[0].port == 0 and doors[0].guarded is not hub
+    assert len(doors) == 1 and doors[0].port == 0 and doors[0].guarded is not bool(hub)
     assert doors[0].framed
 
 
@@ -1026,3 +1037,25 @@ def test_every_attribute_of_the_page_reaches_the_browser(app_module, monkeypatch
         app_module.App(f"attributes {net is None}", net=net).close()
     assert len(made) > 200 and all(widget.html for widget in made)
     assert {w._elem_name: w.skipped_attributes for w in made if w.skipped_attributes} == {}
+
+
+def test_a_person_without_these_packages_gets_a_still_picture_and_is_told_why(
+    kernel, monkeypatch, capsys
+):
+    monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
+    monkeypatch.setitem(sys.modules, "inetlib.explorer.serve", None)
+    monkeypatch.delattr("inetlib.explorer.serve", raising=False)
+    for shown in (partial(notebook.show, m=4, n=4), partial(notebook.turn, *PATCH)):
+        assert decoded(shown().data).std() > 0.01
+        out = capsys.readouterr().out
+        assert out.startswith("a still picture: ") and "pip install" in out and out.count("\n") == 1
+    with pytest.raises(ImportError, match="pip install"):
+        notebook.show(m=4, n=4, live=True)
+
+
+def test_who_runs_a_notebook_in_vs_code_is_a_person(kernel, monkeypatch):
+    monkeypatch.delenv("JPY_SESSION_NAME", raising=False)
+    assert not notebook.person()
+    shell = types.SimpleNamespace(user_ns={"__vsc_ipynb_file__": "a.ipynb"})
+    monkeypatch.setattr("IPython.get_ipython", lambda: shell)
+    assert notebook.person()

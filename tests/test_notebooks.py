@@ -21,6 +21,7 @@ from nbconvert import HTMLExporter
 
 from inetlib import publish
 from inetlib.drawings import same
+from inetlib.explorer.notebook import Live
 
 ROOT = Path(__file__).resolve().parent.parent
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -178,6 +179,17 @@ def test_a_page_made_of_a_notebook_reads_out_the_words_of_its_pictures():
     pictures = [o for c in cells_of(path) for o in c.outputs if "image/png" in o.get("data", {})]
     read = [html.unescape(x) for x in re.findall(r'<img alt="([^"]*)"', page)]
     assert read == [o.metadata["image/png"]["alt"] for o in pictures] != []
+
+
+def test_the_picture_of_a_live_view_stays_where_a_page_is_made_of_a_notebook():
+    import nbformat
+
+    png = b"\x89PNG of a net"
+    data = Live("http://127.0.0.1:9/index.html", png, 400)._repr_mimebundle_()
+    output = nbformat.v4.new_output("display_data", data)
+    cell = nbformat.v4.new_code_cell("explorer.show()", outputs=[output])
+    page, _ = HTMLExporter().from_notebook_node(nbformat.v4.new_notebook(cells=[cell]))
+    assert f"data:image/png;base64,{base64.b64encode(png).decode()}" in page
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -121,7 +121,7 @@ def test_a_net_is_live_for_a_person(monkeypatch, kernel, session, display, live)
     monkeypatch.setattr(view, "picture", lambda _: still)
     monkeypatch.setattr(view, "available", lambda: (True, ""))
     monkeypatch.setattr(view, "headless", lambda: not display)
-    door = types.SimpleNamespace(port=1, nets={})
+    door = types.SimpleNamespace(port=1, nets={}, root="http://127.0.0.1:1/abc/")
     monkeypatch.setattr(notebook, "_open_door", lambda: door)
     monkeypatch.setenv("JPY_SESSION_NAME", "a.ipynb")
     if not session:

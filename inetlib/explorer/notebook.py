@@ -17,6 +17,10 @@ from . import choices
 from .session import Session
 
 MISSING = "the explorer needs packages of the extra `view`: pip install -e '.[view]'"
+GONE = (
+    'No live view here: run the cell again, or open <a href="{0}" target="_blank">its page</a> '
+    "in a browser of this machine while the kernel runs (README.md: JupyterLab elsewhere)."
+)
 TOP, ROUND = (-np.pi / 2, np.pi / 2), (-0.9, 0.45)  # azimuth and elevation of pictures
 _lock = threading.Lock()
 _door = None
@@ -33,7 +37,8 @@ class Live(NamedTuple):
         data = base64.b64encode(self.picture).decode()
         image = f'<img alt="the net" style="max-width: 100%" src="data:image/png;base64,{data}">'
         style = f"width: 100%; height: {self.height}px; border: 1px solid #8888"
-        page = f'<object type="text/html" data="{self.address}" style="{style}">{image}</object>'
+        still = f"{image}<p>{GONE.format(self.address)}</p>"
+        page = f'<object type="text/html" data="{self.address}" style="{style}">{still}</object>'
         return {"text/html": page, "image/png": data, "text/plain": self.address}
 
 
@@ -41,7 +46,7 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     """The explorer in a notebook: `explorer.show(kind="revolution", theta=75, theta0=60)`.
 
     values: those of `choices.Choice`, angles in degrees, else ValueError.  live: a `Live` page,
-    or a still IPython Image; by default live where a person runs the notebook."""
+    or a still IPython Image; by default live where a person runs the notebook and can have it."""
     session = Session()
     _change(session, **values)
     if session.must_search:
@@ -51,7 +56,7 @@ def show(height: int = 640, live: bool | None = None, **values: object) -> Any:
     if session.V is None:
         raise ValueError(session.problem)
     picture = session.save(".png", *(ROUND if session.V[:, 2].any() else TOP))
-    if not (person() if live is None else live):
+    if not (_possible() if live is None else live):
         return _still(picture, width=640)
     address = f"{_address(_open_door())}index.html?{choices.link(session.choice)}"
     return Live(address, picture, height)
@@ -73,22 +78,26 @@ def turn(
     that are no net."""
     notebook = "ipykernel" in sys.modules
     if live is None:
-        live = person() if notebook else not shaded.headless()
+        live = _possible() if notebook else not shaded.headless()
     if live and not notebook:
         return shaded.scene(V, Q, families, colours, width, view, live=True).show()
     picture = None
-    if not live or shaded.available()[0]:  # the page needs no OpenGL
+    if shaded.available()[0] or not (live or person()):  # pages, and pictures of them, need none
         scene = shaded.scene(V, Q, families, colours, width, view)
         picture = same.few_tones(shaded.picture(scene), tones=(192,))
-    if not live:
+    if picture and not live:
         return _still(picture)
-    session, door, key = Session(net=(V, Q)), _open_door(), secrets.token_hex(8)
+    session = Session(net=(V, Q))
     drawn = mesh.polylines(session.Q) if families is None else families
     _change(session, families=[name for name, lines in drawn._asdict().items() if len(lines)])
+    picture = picture or session.save(".png", *view)
+    if not live:
+        return _still(picture, width=640)
+    door, key = _open_door(), secrets.token_hex(8)
     door.nets[key] = session.V, session.Q
     query = "families=" + ",".join(session.choice.families)
     address = f"{_address(door)}net/{key}/index.html?{query}"
-    return Live(address, picture or session.save(".png", *view), height=480)
+    return Live(address, picture, height=480)
 
 
 def in_the_round(V: np.ndarray, Q: np.ndarray, view: tuple = (-0.9, 0.35)) -> Any:
@@ -113,14 +122,41 @@ def _still(picture, width=None):
 
 
 def person() -> bool:
-    """Whether somebody runs this notebook by hand: a kernel of a Jupyter server has a name."""
-    return "ipykernel" in sys.modules and "JPY_SESSION_NAME" in os.environ
+    """Whether somebody runs this notebook by hand, in JupyterLab or in VS Code.
+
+    A kernel of a Jupyter server has a name; VS Code puts the notebook's among its variables."""
+    if "ipykernel" not in sys.modules:
+        return False
+    from IPython import get_ipython
+
+    shell = get_ipython()
+    return "JPY_SESSION_NAME" in os.environ or "__vsc_ipynb_file__" in getattr(shell, "user_ns", ())
+
+
+def _possible():
+    """Whether there is a person who can have a live page; who lacks its packages is told so."""
+    if not person():
+        return False
+    try:
+        server()
+    except ImportError as error:
+        print(f"a still picture: {error}")
+        return False
+    return True
+
+
+def _proxy():
+    """The path below which a Jupyter server hands on ports of its machine, or "".
+
+    That of a hub, or INETLIB_PROXY, for jupyter-server-proxy without one."""
+    hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
+    return os.environ.get("INETLIB_PROXY") or (f"{hub}proxy/" if hub else "")
 
 
 def _address(door):
     """Where the browser of a notebook finds the door."""
-    hub = os.environ.get("JUPYTERHUB_SERVICE_PREFIX")
-    return f"{hub}proxy/{door.port}/{door.token}/" if hub else door.root
+    proxy = _proxy()
+    return f"{proxy.rstrip('/')}/{door.port}/{door.token}/" if proxy else door.root
 
 
 def server() -> Any:
@@ -137,7 +173,7 @@ def _open_door():
     global _door
     with _lock:
         if _door is None:
-            guarded = "JUPYTERHUB_SERVICE_PREFIX" not in os.environ  # the hub is a guard itself
+            guarded = not _proxy()  # which is a guard itself, and has another name
             door, loop = server().Door(guarded=guarded, framed=True), asyncio.new_event_loop()
             threading.Thread(target=loop.run_forever, daemon=True).start()
             asyncio.run_coroutine_threadsafe(door.open(0), loop).result(60)
