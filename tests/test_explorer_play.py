@@ -1,6 +1,7 @@
 """What one does with a net in the explorer, without its page: shading, undo, touching, remedies."""
 
 import re
+import time
 from dataclasses import replace
 
 import igl
@@ -9,7 +10,7 @@ import pytest
 import pyvista
 
 from inetlib import design, examples, io, measure, mesh
-from inetlib.explorer import behind, look, plates, probe
+from inetlib.explorer import behind, look, plates, probe, remedy
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.history import MOST, History
 from inetlib.explorer.session import Session
@@ -196,3 +197,45 @@ def test_the_surface_and_the_ghost_are_sent_when_they_change_and_leave_nothing()
     assert show(None, None)
     assert shown.surface.n_points == shown.ghost.n_points == 1
     plotter.close()
+
+
+FAULTY = [
+    {"kind": "revolution", "theta": 120, "theta0": 30, "m": 5, "n": 60},
+    {"kind": "plane", "map": "moebius", "px": 0.5, "py": 0.2},
+    {"kind": "plane", "theta": 1, "theta0": 179},
+    {"kind": "cover", "source": "file"},
+]
+
+
+@pytest.mark.parametrize("values", FAULTY)
+def test_where_there_is_no_good_net_each_change_that_is_offered_makes_one(values):
+    found = Session()
+    found.change(m=values.get("m", 8), n=values.get("n", 8), quads=60)
+    found.change(**values)
+    (found.search(found.begin()) if found.must_search else found.construct())
+    assert found.is_faulty
+    offers = remedy.remedies(found.choice)
+    assert 1 <= len(offers) <= remedy.MOST
+    for change in offers:
+        other = Session()
+        other.choice = found.choice
+        assert other.change(**change) == []
+        (other.search(other.begin()) if other.must_search else other.construct())
+        quality = measure.quality(other.V, other.Q)
+        assert not (other.problem or other.is_faulty or quality.flips or quality.darts), change
+        assert all(getattr(found.choice, name) != x for name, x in change.items())
+        words = remedy.words(change)
+        assert words.isprintable() and words.count("=") == len(change)
+
+
+def test_the_angles_that_are_offered_are_near_and_nothing_is_tried_when_it_must_end():
+    choice = replace(Choice(), theta=1.0, theta0=179.0, m=8, n=8)
+    both = remedy.remedies(choice)[0]
+    assert 1 < both["theta"] < 20 and 160 < both["theta0"] < 179
+    locked = replace(choice, theta=3.0, theta0=3.0, lock=True)
+    assert all(x["theta"] == x["theta0"] for x in remedy.remedies(locked) if "theta" in x)
+    start = time.monotonic()
+    assert remedy.remedies(choice, going=lambda: False) == []
+    assert time.monotonic() - start < 0.5
+    assert remedy.words({"theta": 62.0, "px": -1.5}) == "\u03b8 = 62\u00b0, pole x = \u22121.5"
+    assert not built(m=5, n=4).is_faulty

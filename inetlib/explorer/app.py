@@ -51,6 +51,7 @@ class App:
     def close(self):
         """Forget the tab: end its search, free its memory, once."""
         self.session.stop()
+        self.play.end()
         for task in (self._task, self._search):
             if task is not None:
                 task.cancel()
@@ -196,6 +197,7 @@ class App:
         state.problem, state.message = session.problem, session.message
         state.can_search = session.must_search
         self._plates()
+        self.play.mend()
         if session.V is None:
             return
         shade, state.legend = session.shading()
@@ -209,7 +211,7 @@ class App:
         state.numbers = plates.numbers(session.report, session.V, session.Q)
         asked = session.shown.theta, session.shown.theta0
         state.histogram_svg = plates.histograms(session.deviations(), asked)
-        self.play.show()
+        self.play.shown()
 
     def _plates(self):
         choice, state = self.session.choice, self.state

@@ -3,7 +3,7 @@
 from .choices import NAMES, Choice
 
 MOST = 100  # choices that are kept
-PAUSE = 1.0  # seconds: changes of the same values that follow faster are one, as those of a drag
+PAUSE = 2.0  # seconds: changes of the same values that follow faster are one, as those of a drag
 
 
 class History:

@@ -204,6 +204,7 @@ def _numbers():
         with html.Tr():
             html.Td("darts (not convex)")
             html.Td("{{ numbers.darts }}", colspan=2, classes="out-darts")
+        widgets.marks()
         with html.Tr():
             html.Td("medial lines")
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
@@ -256,14 +257,18 @@ def _view(plotter):
     keys = {"tabindex": "0", "keydown": "utils.get('inet').keys($event)"}
     small = {"size": "x-small", "variant": "tonal", "color": "primary"}
     with html.Div(classes="ex-middle"):
-        with html.Div(classes="ex-view", **_named(words, role="application"), **keys):
+        stale = ("problem && !searching ? 'ex-view ex-stale' : 'ex-view'",)
+        with html.Div(classes=stale, **_named(words, role="application"), **keys):
             loaded = "utils.get('inet')?.loaded()"
             view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
             widgets.chip()
+            with html.Div(
+                classes="ex-why", v_if=("problem && !searching",), **_named("", role="alert")
+            ):
+                html.Div("{{ problem }}", classes="out-problem")
+                widgets.remedies("true")
         with html.Div(classes="ex-foot"):
             with html.Div(classes="ex-status", **_named("", role="status", aria_live="polite")):
-                shown = {"v_if": ("problem && !searching",), "classes": "ex-warning out-problem"}
-                html.Div("{{ problem }}", **shown)
                 with html.Div(v_if=("searching",)):
                     v3.VProgressCircular(indeterminate=True, size=16, width=2, color="primary")
                     html.Span("{{ progress }}", classes="out-progress mx-2")
@@ -272,6 +277,7 @@ def _view(plotter):
                     html.Span("{{ message }}", v_if=("!problem",), classes="out-message mr-2")
                     again = {"v_if": ("can_search",), "classes": "text-none in-run"}
                     v3.VBtn("Run again", click="trigger('run')", **again, **small)
+                widgets.remedies("!problem && !searching")
             with html.Div(classes="ex-tools", **_named("view", role="group")):
                 for icon, words, call in TOOLS:
                     about = {"title": words, "classes": f"in-{call}", **_named(words)}

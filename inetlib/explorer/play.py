@@ -1,12 +1,18 @@
 """What one does with the net that is shown: touch a face, take a choice back, compare."""
 
+import asyncio
 import time
 from typing import Any
 
 import numpy as np
 
-from . import look, plates, probe
+from .. import measure
+from . import look, plates, probe, remedy
+from .choices import NAMES, SHOWN
 from .history import History, differing
+
+REST = 0.3  # seconds without a change before others are tried
+MARKED = 200  # faces at most
 
 
 class Play:
@@ -16,8 +22,11 @@ class Play:
         self.app, self.history = app, History(app.session.choice)
         self.face = None  # the number of the face that is touched
         self.ghost = None  # V, Q of a net that is kept
-        app.state.update({"face": {}, "ghost": {}, "can_undo": False, "can_redo": False})
-        for call in (self.touch, self.undo, self.redo, self.keep, self.forget):
+        self._trial = self._asked = None  # changes that make a net: looked for, for what values
+        off = dict.fromkeys(("can_undo", "can_redo", "marking"), False)
+        app.state.update(off | {"face": {}, "ghost": {}, "remedies": [], "marks": []})
+        app.state.change("marking")(lambda **_: self.mark())
+        for call in (self.touch, self.undo, self.redo, self.keep, self.forget, self.change):
             app.server.trigger(call.__name__)(call)
 
     def begin(self):
@@ -41,6 +50,57 @@ class Play:
     def redo(self):
         """The choice that was taken back."""
         self._go(self.history.redo())
+
+    def change(self, values: dict):
+        """Take values that are offered."""
+        before = self.app.session.choice
+        self.app.session.change(**values)
+        self.changed()
+        self.app.follow(differing(before, self.app.session.choice))
+
+    def mend(self):
+        """Look for changes that make a net, where there is none or a faulty one, and offer them."""
+        session, choice = self.app.session, self.app.session.choice
+        faulty = session.run is None and session.is_faulty
+        asked = faulty and tuple(vars(choice)[k] for k in NAMES if k not in SHOWN)
+        if asked != self._asked:
+            self.end()
+            self._asked, self.app.state.remedies = asked, []
+            if faulty:
+                self._trial = asyncio.create_task(self._try(choice))
+
+    def end(self):
+        """Try no further changes."""
+        if self._trial is not None:
+            self._trial.cancel()
+        self._trial = self._asked = None
+
+    async def _try(self, choice):
+        await asyncio.sleep(REST)
+        session, trial = self.app.session, self._trial
+
+        def going():
+            return trial is self._trial
+
+        found = await asyncio.to_thread(remedy.remedies, choice, session.surface, going)
+        if found and session.V is None:
+            await asyncio.to_thread(session.stand_in, **found[0])
+            self.app.follow(set())
+        if going():
+            offers = [{"words": remedy.words(values), "values": values} for values in found]
+            with self.app.state:
+                self.app.state.remedies = offers
+
+    def mark(self):
+        """Mark the faces that are flipped or darts, if it is wanted."""
+        session, state = self.app.session, self.app.state
+        if not state.marking or session.V is None:
+            state.marks = []
+            return
+        quality = measure.quality(session.V, session.Q)
+        bad = np.union1d(quality.flipped, quality.nonconvex)[:MARKED]
+        corners = session.V[session.Q[bad]] - self.app.scene.origin
+        state.marks = corners.round(9).tolist()
 
     def _go(self, choice):
         names = differing(self.app.session.choice, choice)
@@ -105,3 +165,8 @@ class Play:
         state.face = probe.about(session.V, session.Q, self.face, (shown.theta, shown.theta0))
         state.face |= {"quad": (corners - self.app.scene.origin).round(9).tolist()}
         state.parallelogram_svg = plates.face(corners)
+
+    def shown(self):
+        """The net in the view is another one: so are its face and its marks."""
+        self.show()
+        self.mark()

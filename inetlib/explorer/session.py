@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import io, measure, mesh, plot
 from ..design import report
-from . import behind, choices, look, nets
+from . import behind, choices, look, nets, remedy
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
 
@@ -52,6 +52,13 @@ class Session:
     def must_search(self):
         """Whether the net of the choice is found by optimisation."""
         return self.choice.kind in nets.FOUND and not self.given
+
+    @property
+    def is_faulty(self):
+        """Whether there is no net of the choice, or one that is not as it was asked for."""
+        stopped = self.run is not None or self.given or "stopped" in self.message
+        good = self.V is not None and remedy.is_good(self.V, self.Q, self.shown)
+        return bool(self.problem) or not (stopped or good)
 
     @property
     def has_one_hole(self):
@@ -111,6 +118,13 @@ class Session:
 
         self._see(run.choice)
         self._settle(run, None, nets.make, self.surface, after)
+
+    def stand_in(self, **values):
+        """Where there is no net yet, show that of another choice; the problem stays."""
+        choice, problem = self.choice, self.problem
+        self.change(**values)
+        self._settle(None, None, nets.make, self.surface)
+        self.choice, self.problem = choice, problem
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""

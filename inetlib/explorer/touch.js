@@ -19,7 +19,7 @@ Object.assign(window.inet, {
     });
     view.addEventListener("keydown", (e) => this.step(e));
     document.addEventListener("keydown", (e) => this.undo(e));
-    window.trame.state.watch(["face"], (face) => this.follow(face));
+    window.trame.state.watch(["face", "marks"], (face, marks) => this.follow(face, marks));
   },
   at(event) {
     // In halves of the view's height from its middle, to the right and up.
@@ -63,9 +63,10 @@ Object.assign(window.inet, {
     const { position, focalPoint, viewUp, parallelScale } = this.view().getCamera();
     return { position, focalPoint, viewUp, parallelScale };
   },
-  follow(face) {
+  follow(face, marks) {
     // Drawn again whenever the camera or the size of the view has changed.
     this.quad = face?.quad;
+    this.marks = marks ?? [];
     this.drawn = null;
     if (!this.quad) this.held = false;
     if (this.following) return;
@@ -79,7 +80,7 @@ Object.assign(window.inet, {
     if (!view) return false; // the page is going
     const svg = view.querySelector(".ex-touch") ?? view.appendChild(document.createElementNS("http://www.w3.org/2000/svg", "svg"));
     svg.setAttribute("class", "ex-touch");
-    if (!this.quad) {
+    if (!this.quad && !this.marks.length) {
       svg.innerHTML = "";
       return false;
     }
@@ -88,7 +89,8 @@ Object.assign(window.inet, {
     const now = JSON.stringify([sight, width, height]);
     if (now !== this.drawn) {
       const place = this.projection(sight, width, height);
-      svg.innerHTML = this.shape(this.quad.map(place));
+      const marked = this.marks.map((quad) => this.mark(quad.map(place))).join("");
+      svg.innerHTML = marked + (this.quad ? this.shape(this.quad.map(place)) : "");
       this.drawn = now;
     }
     return true;
@@ -105,6 +107,12 @@ Object.assign(window.inet, {
       const d = minus(point, sight.focalPoint);
       return [width / 2 + dot(d, right), height / 2 - dot(d, up)];
     };
+  },
+  mark(quad) {
+    const [x, y] = [0, 1].map((k) => quad.reduce((sum, p) => sum + p[k] / 4, 0));
+    const small = Math.max(...quad.map((p) => Math.hypot(p[0] - x, p[1] - y))) < 12;
+    const ring = small ? `<circle class="ring" cx="${x}" cy="${y}" r="14"/>` : "";
+    return `<path class="mark" d="M${quad.join("L")}Z"/>${ring}`;
   },
   shape(quad) {
     const line = (name, a, b) => `<path class="${name}" d="M${a}L${b}"/>`;

@@ -82,3 +82,29 @@ def compared() -> None:
                 html.Td(words)
                 for which in ("numbers", "ghost"):
                     html.Td(f"{{{{ {which}.{name} }}}}{unit}", classes=f"out-{which}-{name}")
+
+
+def remedies(condition: str) -> None:
+    """Buttons for changes that make a net."""
+    with html.Div(classes="ex-remedies", v_if=(f"{condition} && remedies.length",)):
+        html.Span("{{ problem ? 'There is a net with' : 'Better with' }}")
+        about = {"size": "x-small", "variant": "tonal", "color": "primary", "key": "k"}
+        with v3.VBtn(
+            v_for="(way, k) in remedies",
+            click="trigger('change', [way.values])",
+            classes="text-none in-remedy",
+            **about,
+        ):
+            html.Span("{{ way.words }}")
+
+
+def marks() -> None:
+    """A row of a table: a button that shows where flipped faces and darts are."""
+    bad = "numbers.flips && (numbers.flips != '0' || numbers.darts != '0')"
+    with html.Tr(v_show=bad):
+        html.Td("{{ marks.length ? 'marked: ' + marks.length : '' }}", classes="out-marks")
+        with html.Td(colspan=2):
+            about = {"size": "x-small", "variant": "tonal", "classes": "text-none in-marks"}
+            v3.VBtn(
+                "{{ marking ? 'Hide them' : 'Show them' }}", click="marking = !marking", **about
+            )
