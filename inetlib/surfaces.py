@@ -191,12 +191,26 @@ def cone_profile(gamma: float, start: float = 0.2, stop: float = 2.0) -> Profile
     return Profile(lambda t: t * np.sin(gamma), lambda t: t * np.cos(gamma), start, stop)
 
 
+def barrel_profile(start: float = 0.0, stop: float = 3.0) -> Profile:
+    """A barrel, widest half way up, by its height t: a parabola."""
+    return Profile(lambda t: 1.12 - 0.42 * (t / 1.5 - 1) ** 2, lambda t: t + 0.0, start, stop)
+
+
+def hourglass_profile(start: float = 0.0, stop: float = 3.0) -> Profile:
+    """An hourglass, a hyperboloid of one sheet, by its height t."""
+    return Profile(
+        lambda t: 0.55 * np.sqrt(1 + 3 * (t / 1.5 - 1) ** 2), lambda t: t + 0.0, start, stop
+    )
+
+
 PROFILES: dict[str, Callable[[], Profile]] = {
     "sphere": sphere_profile,
     "torus": torus_profile,
     "catenoid": catenoid_profile,
     "vase": vase_profile,
     "cone": partial(cone_profile, np.radians(30)),
+    "barrel": barrel_profile,
+    "hourglass": hourglass_profile,
 }
 
 

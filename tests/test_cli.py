@@ -204,7 +204,7 @@ def test_the_examples_are_those_that_the_commands_know(inet):
     out = inet("examples")[1]
     for group in ("surfaces", "profiles"):
         for name, words in found[group].items():
-            assert f"  {name:16}{words}\n" in out and words[:2] in ("A ", "Th")
+            assert f"  {name:16}{words}\n" in out and words.startswith(("A ", "An ", "The "))
 
 
 def test_a_picture_of_a_net_or_a_surface_is_drawn_and_not_overwritten(inet, web):

@@ -197,7 +197,9 @@ def test_splines_pass_through_their_points_and_their_mercator_is_the_quadrature(
 
 
 def test_the_named_profiles_can_be_used_as_they_are():
-    assert list(surfaces.PROFILES) == ["sphere", "torus", "catenoid", "vase", "cone"]
+    assert list(surfaces.PROFILES) == [
+        "sphere", "torus", "catenoid", "vase", "cone", "barrel", "hourglass"
+    ]  # fmt: skip
     for make in surfaces.PROFILES.values():
         assert surfaces.check_profile(make()).start < make().stop
     cone = surfaces.PROFILES["cone"]()

@@ -4,6 +4,10 @@ from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 from urllib.parse import parse_qsl, urlencode
 
+import numpy as np
+
+from .. import surfaces
+
 FAMILIES = "u", "v", "d1", "d2"
 OPTIONS = {
     "kind": {
@@ -45,13 +49,21 @@ OPTIONS = {
         "planarity": "planarity",
     },
 }
-PROFILES = {
-    "vase": (0.80, 1.02, 1.00, 0.72, 0.45, 0.48, 0.66),
-    "barrel": (0.70, 0.95, 1.08, 1.12, 1.08, 0.95, 0.70),
-    "hourglass": (1.10, 0.88, 0.66, 0.55, 0.66, 0.88, 1.10),
-    "cone": (1.20, 1.05, 0.90, 0.75, 0.60, 0.45, 0.30),
-}
 HEIGHTS = tuple(0.5 * k for k in range(7))  # of the radii of a profile
+
+
+def _radii(profile):
+    """The radii at HEIGHTS of a meridian that goes up, brought to their height; None of another."""
+    t = np.linspace(profile.start, profile.stop, 1001)
+    radius, height = profile.radius(t), profile.height(t)
+    if (np.diff(height) <= 0).any():
+        return None
+    scale = HEIGHTS[-1] / (height[-1] - height[0])
+    found = np.interp(HEIGHTS, scale * (height - height[0]), scale * radius)
+    return tuple(round(float(x), 2) for x in found)
+
+
+PROFILES = {name: radii for name, make in surfaces.PROFILES.items() if (radii := _radii(make()))}
 
 
 class Range(NamedTuple):

@@ -139,7 +139,7 @@ def _profile():
     low, _, step = choices.RADIUS[:3]
     with html.Div(v_show="kind == 'revolution'"):
         html.H2("Profile")
-        with html.Div(classes="d-flex ga-1 mb-1"):
+        with html.Div(classes="d-flex flex-wrap ga-1 mb-1"):
             for name, radii in choices.PROFILES.items():
                 about = {"classes": "text-none px-1 flex-grow-1", "click": f"radii = {list(radii)}"}
                 v3.VBtn(name, size="x-small", variant="tonal", **about)
@@ -150,7 +150,7 @@ def _profile():
                     new = f"radii = radii.map((r, i) => i == {k} ? %s : r)"
                     label, value = f"radius at height {height:g}", {"model_value": (f"radii[{k}]",)}
                     with html.Div(classes=f"ex-row in-radius{k}"):
-                        _slider(label, low, 1.6, step, update_modelValue=new % "$event", **value)
+                        _slider(label, low, 2.4, step, update_modelValue=new % "$event", **value)
                         _field(label, change=new % "$event.target.value", **value)
 
 
