@@ -12,7 +12,7 @@ from test_repair import TAU, plate, polar, sheet
 from test_ties import noisy
 
 from inetlib import design, examples, measure, mesh, repair, solver
-from inetlib.design import flatten, report
+from inetlib.design import flatten, overlay, report
 from inetlib.solver import run
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
@@ -475,3 +475,74 @@ def test_nothing_is_told_where_nothing_is_optimised_and_errors_of_the_caller_rea
         with pytest.raises(RuntimeError, match="of the caller"):
             covered("disk", callback=callback)
         assert callback.call_count == when + 1
+
+
+STAGES = tuple(design.STAGES)
+
+
+def test_a_surface_made_ready_once_gives_the_same_nets_and_is_not_flattened_again(monkeypatch):
+    surface = examples.SURFACES["skylight"]()
+    for openings in (None, "fill"):
+        first = [design.cover(*surface, *np.radians(x), 80, openings=openings) for x in SIXTY]
+        with monkeypatch.context() as patch:
+            known = design.ready(*surface, openings)
+            patch.setattr(flatten, "flatten", Mock(side_effect=AssertionError))
+            for pair, net in zip(SIXTY, first, strict=True):
+                again = design.cover(None, None, *np.radians(pair), 80, known=known)
+                assert np.array_equal(again.V, net.V) and np.array_equal(again.Q, net.Q)
+                assert set(again.report.seconds) == set(STAGES[2:])
+                assert set(net.report.seconds) == set(STAGES)
+
+
+@pytest.mark.parametrize("last", STAGES)
+def test_a_stage_that_is_refused_is_the_last_one(last):
+    told = []
+
+    def stage(name):
+        told.append(name)
+        return name != last
+
+    with pytest.raises(design.Stopped, match=design.STAGES[last]):
+        design.cover(*examples.wavy_roof(8), *np.radians([60, 60]), 30, stage=stage)
+    assert list(dict.fromkeys(told)) == list(STAGES[: STAGES.index(last) + 1])
+    assert told.count(last) == 1
+
+
+SIXTY = (60, 60), (75, 50)
+STEEP = (1, 1), (179, 179), (1, 179), (90, 1), (90, 179)
+
+
+@pytest.mark.parametrize("name", ["roof", "saddle", "skylight"])
+def test_quads_that_are_too_slender_for_a_surface_are_refused_before_any_step(name, monkeypatch):
+    monkeypatch.setattr(solver, "optimize", Mock(side_effect=AssertionError))
+    known = design.ready(*examples.SURFACES[name]())
+    for pair in STEEP:
+        with pytest.raises(ValueError, match=r"\d+ of \d+ are not convex.*more quads"):
+            design.cover(None, None, *np.radians(pair), 300, known=known)
+
+
+def test_no_report_says_that_more_than_the_surface_is_covered():
+    net = design.cover(*examples.saddle_with_hole(), *np.radians([1, 1]), 300, optimise=False)
+    assert net.report.covered > 3
+    said = report.text(net.report)
+    assert "in folds" in said and "% of the surface" not in said
+    flat = design.cover(*examples.wavy_roof(8), *np.radians([60, 60]), 30)
+    share = re.search(r"(\d+) % of the surface is covered", report.text(flat.report))
+    assert 50 < int(share[1]) < 100
+
+
+def test_all_grid_points_near_a_domain_are_found_however_slender_the_cells():
+    surface = examples.SURFACES["skylight"]()
+    ground = design.ready(*surface, "fill")
+    flat, domain = ground.flat, overlay.Domain(ground.flat, ground.V)
+    for u, v in ((0.3, 0.2j), (0.5, 0.5 + 0.02j), (-0.1 + 0.4j, 0.41j), (0.3j, 0.5), (0.2, 0.9j)):
+        i, j = overlay.points(domain, u, v)
+        assert len(set(zip(i.tolist(), j.tolist(), strict=True))) == len(i)
+        area = np.imag(np.conj(u) * v)
+        a = np.floor(np.imag(flat.z * np.conj(v)) / -area).astype(int)
+        b = np.floor(np.imag(np.conj(u) * flat.z) / area).astype(int)
+        corners = {
+            (p + k, q + m) for p, q in zip(a, b, strict=True) for k in (0, 1) for m in (0, 1)
+        }
+        assert corners <= set(zip(i.tolist(), j.tolist(), strict=True))
+        assert np.abs(i * u + j * v - flat.z.mean()).max() < 2 * domain.size + abs(u) + abs(v)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from tqdm import tqdm
 
-from .. import parallelogram, reference, repair, solver
+from .. import measure, parallelogram, reference, repair, solver
 from ..solver.run import timed
 from ..solver.sparse import BLAS
 from . import flatten, opening, overlay, steer
@@ -31,8 +31,24 @@ ATTEMPTS = (  # the first good one is taken: on the surface, or near it
 COARSE = 1000  # triangles: a surface with fewer is divided before it is flattened
 FINE = 1e-3  # radians: a net on the surface that is this close is finished in space
 GROWN = 1.5  # of the area: a net that grows or shrinks more has folded or collapsed
-STAGES = {"check": "checking", "flatten": "flattening", "grid": "laying", "report": "measuring"}
+STAGES = {"check": "checking", "flatten": "flattening", "grid": "laying"}
+STAGES |= {"optimise": "optimising", "report": "measuring"}
 AWAY = 0.01  # of the diagonal: vertices farther from the surface are not welcome
+SLENDER = 0.15  # of the faces: where more are darts or flipped in the grid as lifted, they stay so
+
+
+class Stopped(ValueError):
+    """The caller said stop before there was a net."""
+
+
+class Ground(NamedTuple):
+    """A surface made ready by `ready`: it fits all angles, sizes and directions."""
+
+    surface: repair.Clean
+    goal: reference.Reference
+    V: np.ndarray  # (n, 3) vertices that were flattened
+    flat: flatten.Flat
+    seconds: dict  # {stage: seconds}
 
 
 class Cover(NamedTuple):
@@ -48,6 +64,26 @@ class Cover(NamedTuple):
     report: Report
     polygons: list = ()  # index arrays: panels that are cut at the boundary, turning like the quads
     edges: dict = None  # {"u": (k, 2), "v": (k, 2)}: where the curves of the net run on, to there
+
+
+def ready(
+    V: np.ndarray,
+    F: np.ndarray,
+    openings: str | None = None,
+    boundary: str = "even",
+    progress: bool = False,
+    stage: Callable | None = None,
+) -> Ground:
+    """The surface V (n, 3), F as a `Ground` for `cover(..., known=ground)`; arguments as there."""
+    seconds = {}
+    begin = partial(_stage, seconds, progress, stage)
+    with begin("check"):
+        surface = repair.clean(V, F)
+        filled = opening.are_filled(openings, surface.loops)
+        goal = reference.mesh(surface.V, surface.F)
+    with begin("flatten"):
+        W, flat = _flatten(surface, filled, boundary)
+    return Ground(surface, goal, W, flat, seconds)
 
 
 def cover(
@@ -69,6 +105,8 @@ def cover(
     tolerance: float = 1e-11,
     progress: bool = False,
     callback: Callable | None = None,
+    stage: Callable | None = None,
+    known: Ground | None = None,
 ) -> Cover:
     """The surface V (n, 3), F triangles (f, 3) or quads (f, 4), covered by a net: a `Cover`.
 
@@ -88,12 +126,15 @@ def cover(
     optimise       move the vertices until the angles are exact up to `tolerance` (else: nearly)
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
                    after every one (`solver.run.Step`); it may return False to stop
+    stage          (name) when one begins, one of STAGES, and often in "grid"; it may
+                   return False to stop: then `Stopped` is raised
+    known          the surface, made `ready` before: V, F, boundary and openings are those of it
 
     The surface is a disk with any number of holes, in one piece; the net has whole quads only
     and leaves less than a quad's width free at the boundary, or cut panels there.  Over a ring it
     closes, with the nearest size and direction for which it can.  ValueError for input that
-    cannot be covered; safe repairs are named in the report.  Look at `report.converged`: a net
-    that is off is returned, not raised."""
+    cannot be covered, and for quads too slender for the surface; safe repairs are named in the
+    report.  Look at `report.converged`: a net that is off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
     parallelogram.ratios(theta, theta0)  # refuses angles out of range
     if size is None:
@@ -103,43 +144,49 @@ def cover(
     if not np.isfinite(direction):
         raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
     through, align = steer.check(along, through, align)
-    seconds = {}
-    stage = partial(_stage, seconds, progress)
-    with stage("check"):
-        surface = repair.clean(V, F)
-        filled = opening.are_filled(openings, surface.loops)
-        goal = reference.mesh(surface.V, surface.F)
-    with stage("flatten"):
-        W, flat = _flatten(surface, filled, boundary)
-        flat, turn = steer.steered(flat, W, along, through, align)
-    with stage("grid"):
-        domain = overlay.Domain(flat, W)
-        layer = overlay.cover(domain, theta, theta0, count, size, direction + turn)
+    ground = known or ready(V, F, openings, boundary, progress, stage)
+    goal, seconds = ground.goal, {} if known else ground.seconds
+    begin = partial(_stage, seconds, progress, stage)
+    with begin("grid") as ask:
+        flat, turn = steer.steered(ground.flat, ground.V, along, through, align)
+        domain = overlay.Domain(flat, ground.V)
+        layer = overlay.cover(domain, theta, theta0, count, size, direction + turn, ask)
         edge = cut(domain, layer) if trim else None
         layer = edge.layer if trim else layer
     pinned = np.flatnonzero(~layer.ij.any(axis=1)) if through is not None else []
     net, done, words = layer.V, False, "not optimised"
     if optimise:
-        with timed(seconds, "optimise"), BLAS.limit(limits=1, user_api="blas"):  # more only wait
+        with begin("optimise"), BLAS.limit(limits=1, user_api="blas"):  # more only wait
+            _refuse_slender(layer)
             ways = {"reference": goal, "tolerance": tolerance, "progress": progress}
             ways["fixed"] = pinned if len(pinned) else None
             net, done, words = _optimise(layer, theta, theta0, callback, ways)
-    with stage("report"):
+    with begin("report"):
         Q, polygons = layer.Q, []
         if trim:
             net, plain = (np.concatenate([x, edge.extra]) for x in (net, layer.V))
             net, Q, edge = uncrossed(net, plain, Q, edge)
             polygons = edge.polygons
         found = survey(net, Q, theta, theta0, goal, flat, polygons)
-    words += _away(found, surface) if done else ""
+    words += _away(found, ground.surface) if done else ""
     found = found._replace(converged=done, message=words, winding=layer.winding)
-    found = found._replace(repairs=tuple(surface.repairs), seconds=seconds)
+    found = found._replace(repairs=tuple(ground.surface.repairs), seconds=seconds)
     if not (through is None or trim or len(pinned)):
         missed = "no whole quad reaches the point to go through: trim the net, or ask for more"
         found = found._replace(notes=(*found.notes, missed))
     if not trim:
         return Cover(net, Q, found, [])
     return Cover(net, Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
+
+
+def _refuse_slender(layer):
+    """ValueError where the grid as lifted is no start: no optimisation makes a net of it."""
+    shape = measure.quality(layer.V, layer.Q)
+    if max(shape.flips, shape.darts) > SLENDER * len(layer.Q):
+        raise ValueError(
+            f"the quads are too slender for this surface: {shape.darts} of {len(layer.Q)} are not "
+            "convex on it; angles nearer to 90 degrees, or more quads, are wanted"
+        )
 
 
 def _away(found, surface):
@@ -166,11 +213,18 @@ def _flatten(surface, filled, boundary):
 
 
 @contextmanager
-def _stage(seconds, progress, name):
-    """A stage of the way, named by a bar while it lasts."""
-    look = {"bar_format": "{desc} ... {elapsed}", "leave": False, "disable": not progress}
+def _stage(seconds, progress, stage, name):
+    """A stage of the way, named by a bar while it lasts; gives what asks whether to go on."""
+
+    def ask():
+        if stage is not None and stage(name) is False:
+            raise Stopped(f"stopped while {STAGES[name]}, before there was a net")
+
+    ask()
+    shown = progress and name != "optimise"  # that has a bar of its own
+    look = {"bar_format": "{desc} ... {elapsed}", "leave": False, "disable": not shown}
     with timed(seconds, name), tqdm(desc=STAGES[name], **look):
-        yield
+        yield ask
 
 
 def _optimise(layer, theta, theta0, callback, ways):

@@ -1,5 +1,6 @@
 """Sheared grids i u + j v over a flattened surface: the whole cells inside, lifted to space."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import igl
@@ -76,15 +77,17 @@ def cover(
     count: int | None = None,
     size: float | None = None,
     direction: float = 0.0,
+    ask: Callable = lambda: None,
 ) -> Layer:
     """The `Layer` of about `count` quads, or of edges of mean length `size`, over a `Domain`.
 
-    direction: of the u-lines against the real axis, radians.  Over a ring size and direction
-    change as little as it takes to close.  ValueError if not one whole quad fits inside."""
+    direction: of the u-lines against the real axis, radians; ask() is called before every size
+    that is tried, and may raise.  Over a ring size and direction change as little as it takes to
+    close.  ValueError if not one whole quad fits inside."""
     lam, mu = parallelogram.ratios(theta, theta0)
     rho, turn = parallelogram.rho(lam, mu), np.exp(1j * direction)
     if size is None:
-        layer = _counted(domain, turn, rho, count)
+        layer = _counted(domain, turn, rho, count, ask)
     else:
         layer = _layer(domain, *_fit(domain, 2 * size / (1 + 1 / mu) * turn, rho))
     if layer is None:
@@ -93,10 +96,11 @@ def cover(
     return layer
 
 
-def _counted(domain, turn, rho, count):
+def _counted(domain, turn, rho, count, ask):
     """The layer whose number of quads is nearest to the wanted one; sizes go by trial."""
     edge, best, tried = _edge(domain, turn, rho, count), None, set()
     for _ in range(TRIES):
+        ask()
         fit = _fit(domain, edge * turn, rho)
         if fit in tried:
             break  # the next grid that closes around a ring is not closer
@@ -185,17 +189,28 @@ def _meet(cells, hole):
 
 
 def points(domain: Domain, u: complex, v: complex) -> tuple[np.ndarray, np.ndarray]:
-    """Integers i, j of all grid points in a box around the domain, each (k,)."""
+    """Integers i, j, each (k,), of all grid points less than a cell from a box of the domain."""
     z, area = domain.flat.z, np.imag(np.conj(u) * v)
-    ij = np.stack([np.imag(z * np.conj(v)) / -area, np.imag(np.conj(u) * z) / area])
-    low, high = np.floor(ij.min(axis=1)), np.ceil(ij.max(axis=1)) + 1
-    number = np.prod(high - low)
-    if number > MOST:
-        raise ValueError(
-            f"{number:.3g} grid points are too many: ask for fewer quads, or less extreme angles"
-        )
-    i, j = (np.arange(a, b, dtype=np.int64) for a, b in zip(low, high, strict=True))
-    return np.repeat(i, len(j)), np.tile(j, len(i))
+    along = np.imag(z * np.conj(v)) / -area
+    i = np.arange(*_few(np.floor(along.min()), np.ceil(along.max()) + 1))
+    reach, first, last = abs(u) + abs(v), np.full(len(i), -np.inf), np.full(len(i), np.inf)
+    for one, start, step in ((z.real, i * u.real, v.real), (z.imag, i * u.imag, v.imag)):
+        if abs(step) > TINY * abs(v):  # where the line i u + j v enters the box, and leaves it
+            ends = np.sort([(x - start) / step for x in (one.min() - reach, one.max() + reach)], 0)
+            first, last = np.maximum(first, ends[0]), np.minimum(last, ends[1])
+    first = np.ceil(first)
+    counts = np.maximum(np.floor(last) - first + 1, 0)
+    before = np.cumsum(counts) - counts
+    j = np.arange(*_few(0, counts.sum())) + np.repeat(first - before, counts.astype(np.int64))
+    return np.repeat(i, counts.astype(np.int64)).astype(np.int64), j.astype(np.int64)
+
+
+def _few(low, high):
+    """The same numbers; ValueError where there are too many between them."""
+    if high - low > MOST:
+        number = f"{high - low:.3g} grid points are too many"
+        raise ValueError(f"{number}: ask for fewer quads, or less extreme angles")
+    return low, high
 
 
 def turned(

@@ -14,6 +14,7 @@ NAMES = "lam", "mu", "theta", "theta0"
 SHAPE = "flips", "darts", "corner", "area_ratio", "aspect", "planarity"
 COVERED = 0.8  # of the surface: a net that leaves out more says so
 FAR = 2  # longest edges between the net and a part of the surface that is left out
+FOLDED = 1.05  # times the area of the surface: a net with more lies over itself
 SHOWN = 20  # panels that are named at most
 SHRUNK = 20  # scales of the map that differ more leave parts out, however small the quads
 
@@ -126,8 +127,9 @@ def survey(
         if scale_ratio > SHRUNK:
             why = f"the map to the plane has scales {scale_ratio:.3g} times apart, cut the surface"
         far, gaps = np.argmax(back), f" and the net has {holes} holes" if holes > 0 else ""
+        part = f"{100 - 100 * covered:.0f} %" if covered < 1 else "a part"
         notes.append(
-            f"{100 - 100 * covered:.0f} % of the surface is left out{gaps}, farthest near "
+            f"{part} of the surface is left out{gaps}, farthest near "
             f"{mesh.place(goal.V[far])}, {100 * back[far] / goal.diagonal:.2g} % of its diagonal "
             f"from the net: {why}"
         )
@@ -213,13 +215,19 @@ def text(report: Report) -> str:
     if r.converged is not None:
         lines[-1] += f"; back from it {100 * r.back_max:.2g} % at most"
         lines += [
-            f"{100 * r.covered:.0f} % of the surface is covered; edges {r.edge_low:.3g} to "
-            f"{r.edge_high:.3g}, mean {r.edge_mean:.3g}",
+            f"{_covered(r)}; edges {r.edge_low:.3g} to {r.edge_high:.3g}, mean {r.edge_mean:.3g}",
             f"conformal map: distortion {r.distortion_mean:.3f} on average, "
             f"{r.distortion_max:.3f} at most",
             f"{sum(r.seconds.values()):.2f} seconds",
         ]
     return "\n".join(lines)
+
+
+def _covered(r):
+    """How much of the surface is covered, or that the net is in folds."""
+    if r.covered > FOLDED:
+        return f"the net is in folds: its faces have {r.covered:.3g} times the area of the surface"
+    return f"{100 * min(r.covered, 1):.0f} % of the surface is covered"
 
 
 def _sizes(r):
