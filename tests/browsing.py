@@ -110,7 +110,9 @@ class Reader:
         self.settled()
 
     def picture(self):
-        """What the view shows: RGB (h, w, 3)."""
+        """What the view shows when it is at rest: RGB (h, w, 3)."""
+        self.page.evaluate("inet.sharpen()")
+        self.page.evaluate("() => new Promise((r) => requestAnimationFrame(() => setTimeout(r, 60)))")
         return image(self.page.locator(".ex-view").screenshot())
 
 
@@ -121,4 +123,4 @@ def image(data):
 def is_drawn(picture):
     """Whether there is a net before a plain background."""
     share = (np.abs(picture - picture[-5, 5]).sum(axis=-1) > 30).mean()
-    return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 20
+    return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 50

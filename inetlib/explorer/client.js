@@ -11,9 +11,9 @@ window.inet = {
   },
   link(query) {
     // Browsers count such changes: one when the values have come to rest.
-    clearTimeout(this.resting);
+    clearTimeout(this.waiting);
     const change = () => window.history.replaceState(null, "", `${window.location.pathname}?${query}`);
-    this.resting = setTimeout(change, 250);
+    this.waiting = setTimeout(change, 250);
   },
   copy(text, what) {
     const done = () => window.trame.state.set("alert", `${what} copied`);
@@ -60,6 +60,25 @@ window.inet = {
     // A camera that came before the first scene was there is lost.
     this.loads += 1;
     if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
+    this.rest();
+  },
+  // At rest the view is drawn with two pixels or more for one of the screen, and shrunk: smooth
+  // curves.  While something moves it is drawn as coarse as the screen, which is quicker.
+  ratio: window.devicePixelRatio || 1,
+  fine: 1,
+  widths: new Map(),
+  rest() {
+    clearTimeout(this.resting);
+    this.resting = setTimeout(() => this.sharpen(), 300);
+  },
+  sharpen(fine = Math.max(1, 2 / this.ratio)) {
+    const { renderer } = this.view().$.provides.view;
+    if (!renderer || this.sharp === fine > 0) return;
+    this.sharp = fine > 0;
+    if (this.sharp) this.widths = new Map(renderer.getActors().map((a) => [a.getProperty(), a.getProperty().getLineWidth()]));
+    this.fine = fine || 1;
+    this.widths.forEach((width, of) => of.setLineWidth(this.sharp ? width * this.ratio * this.fine : width));
+    this.view().resize();
   },
   ended() {
     // The page stays as it is and can be turned; what asks the program is dead.
@@ -77,6 +96,10 @@ window.inet = {
     window.trame.trigger("arrive", [window.location.search, dark, this.place()]);
   },
 };
+Object.defineProperty(window, "devicePixelRatio", { get: () => window.inet.ratio * window.inet.fine });
+for (const name of ["keydown", "pointerdown", "wheel"]) {
+  document.addEventListener(name, () => window.inet.sharp || window.inet.rest(), { capture: true, passive: true });
+}
 (function wait(tries) {
   if (window.trame && window.trame.refs.view && document.querySelector(".ex-view")) window.inet.arrive();
   else if (tries) setTimeout(wait, 50, tries - 1);

@@ -259,8 +259,9 @@ def _view(plotter):
     with html.Div(classes="ex-middle"):
         stale = ("problem && !searching ? 'ex-view ex-stale' : 'ex-view'",)
         with html.Div(classes=stale, **_named(words, role="application"), **keys):
-            loaded = "utils.get('inet')?.loaded()"
-            view = VtkLocalView(plotter.render_window, ref="view", after_scene_loaded=loaded)
+            about = {"before_scene_loaded": "utils.get('inet')?.sharpen(0)"}
+            about["after_scene_loaded"] = "utils.get('inet')?.loaded()"
+            view = VtkLocalView(plotter.render_window, ref="view", **about)
             widgets.chip()
             with html.Div(
                 classes="ex-why", v_if=("problem && !searching",), **_named("", role="alert")
