@@ -112,7 +112,9 @@ class Reader:
     def picture(self):
         """What the view shows when it is at rest: RGB (h, w, 3)."""
         self.page.evaluate("inet.sharpen()")
-        self.page.evaluate("() => new Promise((r) => requestAnimationFrame(() => setTimeout(r, 60)))")
+        self.page.evaluate(
+            "() => new Promise((r) => requestAnimationFrame(() => setTimeout(r, 60)))"
+        )
         return image(self.page.locator(".ex-view").screenshot())
 
 

@@ -168,7 +168,7 @@ def test_the_profile_can_be_edited(tab):
 
 
 def test_families_parallelograms_and_shading_can_be_shown(tab):
-    reader = tab("kind=isothermal&m=8&n=10&families=u")
+    reader = tab("kind=isothermal&m=8&n=10&families=u&parallelograms=0")
     seen = [reader.picture()]
     for name in ("v", "d1", "d2", "parallelograms"):
         reader.page.locator(f".in-{name} input").check()

@@ -159,6 +159,30 @@ def test_whatever_json_a_browser_sends_is_taken_or_refused(values):
     assert changed(Choice(), **asdict(choice)) == (choice, [])
 
 
+def test_an_angle_may_be_written_as_on_paper_and_any_number_with_a_comma():
+    for text in ("60,5", "60.5\u00b0", " 60,5 deg", "60.5 degrees", "60,5\u00b0 "):
+        assert changed(Choice(), theta=text) == (Choice(theta=60.5), [])
+    assert changed(Choice(), px="-0,25") == (Choice(px=-0.25), [])
+    for name, value in (("theta", "6,0,5"), ("theta", "deg"), ("m", "12\u00b0"), ("px", "1 deg")):
+        assert f"{value!r}: a " in refused(name, value)
+
+
+def test_each_kind_opens_with_its_own_size_unless_one_is_asked_for():
+    def sizes(choice):
+        return choice.m, choice.n
+
+    first = {kind: changed(Choice(), kind=kind)[0] for kind in PICKED["kind"]}
+    assert len(set(map(sizes, first.values()))) == 4  # covers have none
+    for kind, other in product(PICKED["kind"], repeat=2):
+        assert sizes(changed(first[kind], kind=other)[0]) == sizes(first[other])
+        kept = changed(changed(first[kind], m=9)[0], kind=other)[0]
+        assert sizes(kept) == (9, first[other].n)
+        assert sizes(changed(first[kind], kind=other, n=7)[0]) == (first[other].m, 7)
+    bent = changed(Choice(), kind="isothermal", surface="rolled")[0]
+    assert bent.bend > 180 and changed(bent, surface="minimal")[0].bend == Choice().bend
+    assert changed(bent, surface="rolled")[0] == bent
+
+
 @pytest.mark.parametrize(
     ("locked", "values", "angles", "lock"),
     [

@@ -355,7 +355,7 @@ async def test_a_closed_tab_leaves_its_scene_to_one_other_tab_which_shows_its_ow
         assert second.scene is not third.scene
         assert left in (second.scene, third.scene)
         for app, size in ((second, 5), (third, 6)):
-            await arrived(app, f"?m={size}&n=2&families=u,v")
+            await arrived(app, f"?m={size}&n=2&families=u,v&parallelograms=0")
         for app, size in ((second, 5), (third, 6)):
             assert np.allclose(app.scene.faces.points, built(m=size, n=2).V, atol=1e-6)
             assert app.scene.faces.n_cells == 2 * size
@@ -430,17 +430,18 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
             hexes = {"#{:02x}{:02x}{:02x}".format(*c) for c in rgb.tolist()}
             assert hexes == {palette.families[name] for name in families}
     cover = design.cover(*examples.wavy_roof(10), *np.radians([60, 60]), 40, trim=True)
-    scene.show(*cover[:2], Choice(), False, None, cover)
+    plain = Choice(parallelograms=False)
+    scene.show(*cover[:2], plain, False, None, cover)
     plan = look.layout(cover.Q, len(cover.V), ("u", "v"), False, cover)
     cells = [*plan.quads.tolist(), *plan.cut.tolist()]
     assert [list(cell.point_ids) for cell in scene.faces.cell] == cells
     assert len(cells) > len(cover.Q) and scene.curves.n_cells == sum(map(len, plan.lines.values()))
-    scene.show(*cover[:2], Choice())
+    scene.show(*cover[:2], plain)
     assert scene.faces.n_cells == len(cover.Q)  # on the way they are not there
     shade = np.arange(3 * len(Q), dtype=np.uint8).reshape(-1, 3)
-    scene.show(V, Q, Choice(), False, shade)
+    scene.show(V, Q, plain, False, shade)
     assert np.array_equal(scene.faces.cell_data["rgb"], shade)
-    scene.show(V, Q, Choice(), False, None)  # the shading goes when it is switched off
+    scene.show(V, Q, plain, False, None)  # the shading goes when it is switched off
     assert len(np.unique(scene.faces.cell_data["rgb"], axis=0)) == 1
     scene.plotter.close()
 

@@ -77,9 +77,14 @@ class Range(NamedTuple):
     whole: bool = False
 
     def read(self, value):
-        """The number that a value or a text is, None where it is none of the range."""
+        """The number that a value or a text is, None where it is none of the range.
+
+        A text may have a comma for the point, and an angle its unit: "60,5 deg"."""
+        text = str(value).strip().replace(",", ".")
+        for word in ("\u00b0", "degrees", "deg") if self.unit == "\u00b0" else ():
+            text = text.removesuffix(word).rstrip()
         try:
-            number = float(value)
+            number = float(text if isinstance(value, str) else value)
         except (TypeError, ValueError, OverflowError):
             return None
         within = self.low < number < self.high or (number in self[:2] and not self.open)
@@ -113,26 +118,26 @@ class Choice:
     """Everything that a net of the explorer depends on, and what is shown of it."""
 
     kind: str = _of(OPTIONS["kind"], "plane")
-    map: str = _of(OPTIONS["map"], "square")
+    map: str = _of(OPTIONS["map"], "exp")
     surface: str = _of(OPTIONS["surface"], "minimal")
     source: str = _of(OPTIONS["source"], "roof")
     theta: float = _of(ANGLE, 60.0)
     theta0: float = _of(ANGLE, 60.0)
     lock: bool = _of(SWITCH, False)
     m: int = _of(Range(3, 150, whole=True), 20)
-    n: int = _of(Range(1, 150, whole=True), 32)
-    bend: float = _of(BEND, 30.0)
+    n: int = _of(Range(1, 150, whole=True), 30)
+    bend: float = _of(BEND, 0.0)
     moebius: bool = _of(SWITCH, False)
     px: float = _of(POLE, -1.4)
     py: float = _of(POLE, 0.6)
     pz: float = _of(POLE, 0.3)
     radii: tuple = _of(RADIUS, PROFILES["vase"])
-    quads: int = _of(Range(10, 20000, 10, whole=True), 800)
+    quads: int = _of(Range(10, 20000, 10, whole=True), 700)
     direction: float = _of(Range(-90, 90, 1, "\u00b0"), 0.0)
     openings: str = _of(OPTIONS["openings"], "ring")
     trim: bool = _of(SWITCH, False)
     families: tuple = _of(FAMILIES, ("u", "v"))
-    parallelograms: bool = _of(SWITCH, False)
+    parallelograms: bool = _of(SWITCH, True)
     shade: str = _of(OPTIONS["shade"], "none")
     target: bool = _of(SWITCH, True)
 
@@ -147,13 +152,22 @@ USES = {  # of each kind, besides the angles and what is shown
     "cover": ("source", "quads", "direction", "openings", "trim"),
 }
 SHOWN = "families", "parallelograms", "shade", "target"
+OPENING = {  # what kinds and surfaces open with, where it is not what `Choice` has
+    "isothermal": {"m": 28, "n": 40},
+    "revolution": {"m": 36},
+    "freeform": {"m": 26, "n": 22},
+    "rolled": {"bend": 220.0},
+}
+PLAIN = {name: getattr(Choice(), name) for name in ("m", "n", "bend")}
 
 
 def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
     """(the choice with these values, sentences on those that are refused).
 
     Values may be texts, as in a link.  With the lock on, one angle takes the other along; turning
-    it on makes theta0 equal to theta.  A new surface lowers the bending to the largest it has."""
+    it on makes theta0 equal to theta.  A new surface lowers the bending to the largest it has.
+    A new kind or surface opens with values of its own in the place of those that are as the
+    former one opened with."""
     good: dict = {}
     problems = []
     for name in sorted(values, key=lambda name: name != "surface"):  # it limits the bending
@@ -165,8 +179,15 @@ def changed(choice: Choice, /, **values: object) -> tuple[Choice, list[str]]:
         angle = good.get("theta", good.get("theta0", choice.theta))
         good |= {"theta": angle, "theta0": angle}
     found = replace(choice, **good)
+    before, after = _opening(choice), _opening(found)
+    moved = {x for x in after if x not in good and getattr(choice, x) == before[x]}
+    found = replace(found, **{x: after[x] for x in moved})
     most = float(_allowed("bend", found.surface).high)
     return replace(found, bend=min(found.bend, most)), problems
+
+
+def _opening(choice):
+    return PLAIN | OPENING.get(choice.kind, {}) | OPENING.get(choice.surface, {})
 
 
 def _allowed(name, surface):

@@ -88,9 +88,9 @@ def _graded(values, low, least, unit):
     return _tones((values - low) / reach), _legend(_tones(part), words)
 
 
-def line_width(quads: int) -> int:
+def line_width(quads: int) -> float:
     """The width of the curves in pixels: thinner where there are more quads."""
-    return 3 if quads < 200 else 2 if quads < 3000 else 1
+    return 3 if quads < 200 else 2 if quads < 2000 else 1 if quads < 6000 else 0.5
 
 
 class Layout(NamedTuple):

@@ -37,7 +37,7 @@ class Session:
         if self.given:
             V, Q = mesh.check_arrays(*net)
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
-            self.change(theta=theta, theta0=theta0)
+            self.change(theta=theta, theta0=theta0, parallelograms=False)
             words = f"{path or 'a net from Python'}; deviations are from its mean angles"
             self._settle(None, None, lambda _: (V, Q, words, None))
             if self.problem:
