@@ -4,7 +4,9 @@ import os
 import signal
 
 import pytest
-from browsing import Reader, start
+from browsing import Reader, is_drawn, start
+
+from inetlib.explorer import choices, welcome
 
 pytestmark = pytest.mark.browser
 
@@ -95,3 +97,93 @@ def test_every_text_stands_out_and_a_telephone_has_nothing_to_scroll_sideways(re
     assert top["height"] > 300 and all(box["y"] >= top["y"] + top["height"] for box in rest)
     html = "getComputedStyle(document.documentElement).backgroundColor"
     assert (reader.page.evaluate(html) == "rgb(255, 255, 255)") is (scheme == "light")
+
+
+def test_the_tour_comes_once_is_led_by_keys_and_is_remembered(reader):
+    page, tour = reader.page, reader.page.locator(".ex-tour")
+    page.add_init_script("if (!sessionStorage.x) localStorage.clear(); sessionStorage.x = 1")
+    opened(reader, "kind=plane&m=8&n=6")
+    tour.wait_for()
+    seen = []
+    for k in range(1, 6):
+        assert f"{k} of 5" in tour.inner_text()
+        target = page.locator(".ex-tour [data-target]").get_attribute("data-target").split(", ")[0]
+        width = page.locator(target).evaluate("e => getComputedStyle(e).outlineWidth")
+        assert width == "3px" and page.locator(target).first.is_visible()
+        seen.append(tour.locator("p").inner_text())
+        shows = tour.locator("button.v-btn--variant-tonal")
+        if k in (2, 3):
+            shows.click()
+            reader.settled()
+        page.locator(".in-next").focus()
+        page.keyboard.press("Enter")
+    assert len(set(seen)) == 5
+    choice = reader.choice()
+    assert choice.theta == 90 and choice.families == ("u", "v", "d1", "d2")
+    assert tour.count() == 0
+    opened(reader, "kind=plane&m=8&n=6")
+    assert tour.count() == 0  # it is remembered
+    page.get_by_title("Help").click()
+    page.locator(".in-tour").click()
+    tour.wait_for()
+    page.keyboard.press("Escape")
+    tour.wait_for(state="detached")
+
+
+def test_a_preset_opens_the_net_of_its_picture(reader):
+    page = reader.page
+    page.locator(".in-presets").click()
+    cards = page.locator(".ex-card")
+    assert cards.count() == len(welcome.PRESETS)
+    loaded = (
+        "() => [...document.querySelectorAll('.ex-card img')].filter(i => i.naturalWidth).length"
+    )
+    cards.last.scroll_into_view_if_needed()
+    page.wait_for_function(f"() => ({loaded})() == {len(welcome.PRESETS)}")
+    assert page.evaluate(CONTRAST)[1] == []
+    page.locator(".in-preset-vase").click()
+    reader.settled()
+    assert reader.choice() == choices.parse(welcome.PRESETS["vase"].link)[0]
+    assert is_drawn(reader.picture())
+    page.get_by_title("Undo").click()
+    reader.settled()
+    assert reader.choice().kind == "plane"
+
+
+def test_all_is_there_at_twice_the_size_and_nothing_moves_where_that_is_unwanted(reader):
+    page = reader.page
+    opened(reader, "kind=revolution&m=8&n=6", size=(640, 360))  # 1280 x 720 at 200 %
+    assert page.evaluate(WIDE) <= 0
+    for name in (".in-theta input[inputmode]", ".in-u input", ".out-histogram"):
+        page.locator(name).scroll_into_view_if_needed()
+        assert page.locator(name).bounding_box()["y"] < 360
+    page.emulate_media(reduced_motion="reduce")
+    spin = """() => Math.max(...[...document.querySelectorAll('*')]
+      .map(e => parseFloat(getComputedStyle(e).transitionDuration)))"""
+    assert page.evaluate(spin) < 0.001
+    page.emulate_media(reduced_motion="no-preference")
+    assert page.evaluate(spin) > 0.1
+
+
+def test_whoever_has_only_keys_sees_where_they_are(reader):
+    page = reader.page
+    opened(reader, "kind=revolution&m=8&n=6")
+    page.locator("body").press("Tab")
+    ring = """() => {
+      const own = document.activeElement;
+      const shown = (e) => e && getComputedStyle(e).outlineStyle != 'none';
+      return shown(own) || shown(own.closest('.v-selection-control__input'))
+        || shown(own.querySelector('.v-slider-thumb__surface'))
+        || Boolean(own.closest('.v-field--focused'))
+        || getComputedStyle(own).boxShadow != 'none';
+    }"""
+    reached = set()
+    for _ in range(30):
+        assert page.evaluate(ring), page.evaluate("document.activeElement.outerHTML")
+        reached.add(
+            page.evaluate("document.activeElement.closest('[class*=in-], .ex-view')?.className")
+        )
+        page.keyboard.press("Tab")
+    words = " ".join(filter(None, reached))
+    for name in ("in-save", "in-presets", "in-kind", "in-theta", "in-lock", "in-m", "in-radius6"):
+        assert name in words, name

@@ -10,7 +10,8 @@ from trame.app import get_server
 from trame.app.core import AVAILABLE_SERVERS
 from trame_vtk.modules import vtk as vtk_module
 
-from . import choices, look, page, plates, scene
+from . import choices, look, page, plates, scene, welcome
+from .history import differing
 from .play import Play
 from .session import Session
 
@@ -20,7 +21,7 @@ NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewh
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
 TEXTS = "alert", "problem", "message", "progress", "code", "link"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
-OFF = "dark", "searching", "can_search", "code_open", "help_open", "has_one_hole"
+OFF = "dark", "searching", "can_search", "code_open", "help_open", "presets_open", "has_one_hole"
 
 
 class App:
@@ -43,7 +44,7 @@ class App:
         self.state.trame__template_error = self.state.trame__template_main  # see `ended` there
         self.state.change(*choices.NAMES)(self._changed)
         self.state.change("dark")(self._dressed)
-        for call in (self.arrive, self.save, self.run, self.stop):
+        for call in (self.arrive, self.preset, self.save, self.run, self.stop):
             self.server.trigger(call.__name__)(call)
         for name in ("fit", "refit", "from_above", "from_side"):
             self.server.trigger(name)(partial(self.look, name))
@@ -100,6 +101,13 @@ class App:
         if NEW_PLACE & names:
             self.sight = self.fitted = None
         self._soon(not names <= set(choices.SHOWN))
+
+    def preset(self, name):
+        """Open a net to begin with."""
+        before = self.session.choice
+        self.session.choice, _ = choices.parse(welcome.PRESETS[name].link)
+        self.play.changed()
+        self.follow(differing(before, self.session.choice))
 
     def run(self):
         """Begin the search again."""

@@ -55,10 +55,29 @@ window.inet = {
     else return;
     event.preventDefault();
   },
+  tour(step) {
+    // Once for a browser, by itself; 0: it is over.
+    try { window.localStorage.setItem("inet-tour", "seen"); } catch { /* not allowed: it comes again */ }
+    window.trame.state.set("tour", step);
+    if (step) document.documentElement.dataset.tour = step;
+    else delete document.documentElement.dataset.tour;
+    requestAnimationFrame(() => {
+      const part = document.querySelector(".ex-tour [data-target]")?.dataset.target;
+      if (step) document.querySelector(part)?.scrollIntoView({ block: "nearest" });
+    });
+    const next = () => document.querySelector(step ? ".in-next" : ".ex-view")?.focus({ preventScroll: true });
+    setTimeout(next, 300); // after a dialog that closes, which gives the focus back
+  },
+  welcome() {
+    let seen = window !== window.top || !document.querySelector(".in-presets");
+    try { seen ||= window.localStorage.getItem("inet-tour"); } catch { seen = true; }
+    if (!seen) this.tour(1);
+  },
   loads: 0,
   loaded() {
     // A camera that came before the first scene was there is lost.
     this.loads += 1;
+    if (this.loads === 1) this.welcome();
     if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
     this.rest();
   },
@@ -100,6 +119,9 @@ Object.defineProperty(window, "devicePixelRatio", { get: () => window.inet.ratio
 for (const name of ["keydown", "pointerdown", "wheel"]) {
   document.addEventListener(name, () => window.inet.sharp || window.inet.rest(), { capture: true, passive: true });
 }
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && window.trame.state.get("tour")) window.inet.tour(0);
+});
 (function wait(tries) {
   if (window.trame && window.trame.refs.view && document.querySelector(".ex-view")) window.inet.arrive();
   else if (tries) setTimeout(wait, 50, tries - 1);

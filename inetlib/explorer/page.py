@@ -10,25 +10,11 @@ from trame.widgets import vuetify3 as v3
 from trame.widgets.vtk import VtkLocalView
 
 from ..io import WITH_CURVES, missing
-from . import choices, widgets
+from . import choices, welcome, widgets
 from .session import SAVED
 
 FOLDER = files("inetlib.explorer")
 MIME = {".svg": "image/svg+xml", ".png": "image/png"}
-HELP = {
-    "Two angles": "Every quad has the same angle \u03b8 between its diagonals and the same angle "
-    "\u03b8\u2080 between the lines that join midpoints of opposite sides. Two ratios say the "
-    "same: \u03bb of the diagonals, \u03bc of these medial lines.",
-    "Mouse and touch": "Drag to turn, drag with two fingers or the middle button to move, wheel "
-    "or pinch to zoom.",
-    "Keyboard": "Tab reaches every control. On a slider the arrow keys change the value; on the "
-    "view they turn it, + and - zoom, F fits the net.",
-    "One face": "Point at a face, tap it, or press Enter and then N or P on the view: the panel "
-    "shows the face, its parallelogram and its two angles. A click keeps it, Esc lets it go.",
-    "Undo": "Ctrl+Z takes the last change back, Ctrl+Shift+Z or Ctrl+Y makes it again.",
-    "Numbers": "Type any value that a slider has no step for, and press Enter. Deviations are "
-    "the largest over all faces, from the angles asked for.",
-}
 TOOLS = (
     ("mdi-fit-to-page-outline", "Fit the net (F)", "fit"),
     ("mdi-arrow-down-circle-outline", "From above", "from_above"),
@@ -63,6 +49,8 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
             with html.Div(classes="ex-side ex-right", **_named("numbers", role="region")):
                 _numbers()
         _dialogs()
+        if not given:
+            welcome.presets(server, _dialog)
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
         for name in ("client.js", "touch.js"):
             client.Script((FOLDER / name).read_text(encoding="utf-8"))
@@ -72,7 +60,11 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
 def _controls(given):
     """What is chosen; of a given net only what is shown."""
     if not given:
-        html.H2("Net")
+        with html.Div(classes="d-flex align-center justify-space-between"):
+            html.H2("Net")
+            about = {"prepend_icon": "mdi-view-grid-outline", "classes": "text-none in-presets"}
+            about |= {"size": "small", "variant": "tonal", "title": "Nets to begin with"}
+            v3.VBtn("Presets", click="presets_open = true", **about)
         _select("kind", "made from")
         _select("map", "map", "kind == 'plane'")
         _select("surface", "surface", "kind == 'isothermal'")
@@ -156,7 +148,7 @@ def _profile():
 
 def _shown(given):
     html.H2("Show")
-    with html.Div(style="display: grid; grid-template-columns: 1fr 1fr"):
+    with html.Div(classes="ex-families"):
         for name in choices.FAMILIES:
             colour = {"color": (f"colours.{name}",), "base_color": (f"colours.{name}",)}
             about = {"value": name, "label": SHOWN[name], "classes": f"in-{name}"}
@@ -268,6 +260,7 @@ def _view(plotter):
             ):
                 html.Div("{{ problem }}", classes="out-problem")
                 widgets.remedies("true")
+        welcome.tour()
         with html.Div(classes="ex-foot"):
             with html.Div(classes="ex-status", **_named("", role="status", aria_live="polite")):
                 with html.Div(v_if=("searching",)):
@@ -293,10 +286,7 @@ def _dialogs():
         html.Div("V: vertices, Q: quads; angles are radians in Python.", classes="ex-note mt-2")
         click = "utils.get('inet').copy(code, 'code')"
         v3.VBtn("Copy", size="small", classes="mt-3", color="primary", click=click)
-    with _dialog("help_open", "How to use this page"):
-        for title, words in HELP.items():
-            html.H4(title, classes="mt-2")
-            html.P(words, classes="text-body-2")
+    welcome.advice(_dialog)
     gone = {"model_value": ("!!alert",), "update_modelValue": "alert = $event ? alert : ''"}
     v3.VSnackbar("{{ alert }}", timeout=7000, location="top", classes="out-alert", **gone)
 
