@@ -202,7 +202,7 @@ def test_the_surface_and_the_ghost_are_sent_when_they_change_and_leave_nothing()
 FAULTY = [
     {"kind": "revolution", "theta": 120, "theta0": 30, "m": 5, "n": 60},
     {"kind": "plane", "map": "moebius", "px": 0.5, "py": 0.2},
-    {"kind": "plane", "theta": 1, "theta0": 179},
+    {"kind": "plane", "map": "square", "theta": 1, "theta0": 179},
     {"kind": "cover", "source": "file"},
 ]
 
