@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import types
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -135,17 +136,17 @@ def test_every_help_text_shows_its_examples_and_they_run(inet, command):
             assert "-o" not in words or Path(words[words.index("-o") + 1]).is_file()
 
 
-def test_the_overview_shows_all_commands_and_examples_that_run_in_this_order(inet):
+def test_the_overview_shows_all_commands_with_examples_that_can_be_run_in_this_order(inet):
     code, out, err = inet()
     assert (code, err) == (0, "") and inet("--help") == inet("help") == (code, out, err)
     assert max(len(line) for line in out.splitlines()) <= 100
-    Path("submissions").mkdir()
-    Path("submissions", "a.ipynb").write_text('{"nbformat": 4, "cells": []}')
     lines = [line.split()[1:] for line in out.splitlines() if line.startswith(" " * 13 + "inet ")]
     assert sorted(line[0] for line in lines) == sorted(cli.COMMANDS) == sorted(cli.TEXTS)
-    for line in lines:
-        assert cli.TEXTS[line[0]][0] in out
-        assert line[0] in ("explore", "figures") or inet(*line)[0] == 0, line
+    made = set()
+    for name, *words in lines:  # each of them is run by the test above
+        assert cli.TEXTS[name][0] in out and " ".join(["inet", name, *words]) in cli.TEXTS[name]
+        made |= {word for before, word in pairwise(words) if before == "-o"}
+        assert {word for word in words if word.endswith(".obj")} <= made, words
     assert inet("help", "web") == inet("web", "--help")
 
 
@@ -259,6 +260,9 @@ def test_bash_completes(inet):
 def test_all_commands_and_options_are_in_the_script_of_each_shell(inet, shell):
     code, out, err = inet("completion", shell)
     assert (code, err) == (0, "")
+    Path("script").write_text(out)
+    if shutil.which(shell):
+        assert subprocess.run([shell, "-n", "script"], capture_output=True).returncode == 0
     for name, command in cli.parsers([*cli.TEXTS])[1].items():
         there = [line for line in out.splitlines() if name in line]
         for option in completion.options(command):
@@ -555,6 +559,8 @@ def test_explore_and_show_serve_what_is_sound_and_tell_the_address(inet, web, mo
     (*none, net) = served.pop()
     assert none == [None, "web.obj", None] and np.array_equal(net[1], io.net(web).Q)
     io.write("two.obj", np.concatenate([V, V + 9]), np.concatenate([F, F + len(V)]))
+    monkeypatch.setattr(module, "serve", lambda *_: Path("none/at all").read_text())
+    assert refused(inet("explore", "--port", 80), "the port 80 cannot be opened, leave --port out")
     assert refused(inet("explore", "two.obj"), "two.obj: the surface has 2 separate pieces")
     assert not served
 

@@ -967,6 +967,15 @@ def test_a_given_net_has_a_page_of_its_own_with_the_families_that_have_curves(do
         notebook.turn(*PATCH, live=False)
 
 
+def test_a_net_of_a_file_is_named_and_read_again_by_its_code(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    io.write("my net.obj", *PATCH)
+    session, names = Session(net=PATCH, path="my net.obj"), {}
+    assert session.message.startswith("my net.obj; ")
+    exec(session.code(), names)
+    assert np.array_equal(names["V"], PATCH[0]) and np.array_equal(names["Q"], PATCH[1])
+
+
 @pytest.mark.parametrize(
     ("name", "value", "prefix"),
     [

@@ -29,6 +29,7 @@ ZSH = """\
 autoload -U +X bashcompinit && bashcompinit
 """
 SHELLS = "bash", "zsh", "fish"
+FILES = "FILE", "FOLDER", "PROFILE"  # metavars of options where a file may stand
 
 
 def options(command: argparse.ArgumentParser) -> dict[str, argparse.Action]:
@@ -57,7 +58,7 @@ def _bash(known):
         flags.append(_case(f"{name} -", "*", every, files=False))
         for option, action in every.items():
             if action.nargs != 0:  # it takes a value
-                files = action.metavar in ("FILE", "FOLDER", "PROFILE")
+                files = action.metavar in FILES
                 values.append(_case(f"{name} {option}", "", _words(action), files))
         plain = [action for action in command._actions if not action.option_strings]
         if plain and (words := _words(plain[0])):
@@ -85,10 +86,10 @@ def _fish(known, texts):
             more = {"a": " ".join(words)} if words else {}
             for option in action.option_strings:
                 key = "l" if option.startswith("--") else "s"
-                flags = "r" * (action.nargs != 0)
+                flags = "" if action.nargs == 0 else "r" if action.metavar in FILES else "x"
                 lines.append(_line(there, text, flags, **{key: option.lstrip("-")}, **more))
             if words and not action.option_strings:
-                lines.append(_line(there, text, "", **more))
+                lines.append(_line(there, text, "f" if action.choices else "", **more))
     return "\n".join(lines)
 
 

@@ -87,7 +87,11 @@ def _serve(given, surface, path, query="", **more):
         if given.open:
             webbrowser.open(address)
 
-    notebook.server().serve(surface, path, given.port, ready, **more)
+    try:
+        notebook.server().serve(surface, path, given.port, ready, **more)
+    except OSError as error:
+        words = "leave --port out, or take another one"
+        raise ValueError(f"the port {given.port} cannot be opened, {words}: {error}") from error
 
 
 def _families(text):

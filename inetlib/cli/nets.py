@@ -133,7 +133,8 @@ def _web(given):
 
     io.check_output(given.output, given.curves, given.force, *_style(given))
     profile = _profile(given.profile)
-    net = loxodrome.web(profile, given.theta, given.theta0, given.m, given.n, given.method)
+    with options.stage(given, "laying"):
+        net = loxodrome.web(profile, given.theta, given.theta0, given.m, given.n, given.method)
     about = _report(given, net.V, net.Q)
     more = {"rows": net.rows, "quads_around": given.m, "message": net.message}
     return _finish(given, net.V, net.Q, (), about, [], more)
