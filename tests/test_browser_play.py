@@ -94,7 +94,7 @@ def test_a_click_holds_a_face_that_follows_the_camera_and_the_angles(reader):
     reader.page.mouse.down()
     reader.page.mouse.up()
     reader.settled()
-    point(reader, 0.4, 0.4)
+    point(reader, 0.7, 0.4)
     assert face(reader) == one
     before = drawn(reader)
     reader.page.locator(".ex-view").focus()
@@ -108,6 +108,20 @@ def test_a_click_holds_a_face_that_follows_the_camera_and_the_angles(reader):
     reader.page.keyboard.press("Escape")
     reader.settled()
     assert face(reader) is None
+
+
+def test_a_tap_shows_a_face_and_one_beside_the_net_lets_it_go(reader):
+    go(reader, kind="plane", map="inverse", m=8, n=10)
+    box = reader.page.locator(".ex-view").bounding_box()
+    tap = """([clientX, clientY]) => { for (const name of ['pointerdown', 'pointerup'])
+      document.querySelector('.ex-view canvas').dispatchEvent(new PointerEvent(name,
+        {clientX, clientY, bubbles: true, pointerType: 'touch'})); }"""
+    for x, y, on_net in ((0.6, 0.5, True), (0.02, 0.02, False)):
+        place = [box["x"] + x * box["width"], box["y"] + y * box["height"]]
+        reader.page.evaluate(tap, place)
+        reader.settled()
+        assert (face(reader) is not None) is on_net
+        assert bool(reader.text(".ex-chip")) is on_net
 
 
 def test_faces_are_reached_by_keys(reader):
@@ -144,7 +158,8 @@ def test_hovering_does_not_queue_up(reader):
     reader.settled()
     assert 1 <= reader.page.evaluate("window.asked") < 10
     last = reader.page.evaluate("([x, y]) => inet.at({clientX: x + 29.9, clientY: y})", [x, y])
-    assert last is None and face(reader) is not None
+    reader.settled()
+    assert last is True and face(reader) is not None
     judge(reader, face(reader))
 
 

@@ -32,13 +32,13 @@ def test_faces_are_shaded_by_their_size_with_a_scale_in_the_units_of_the_net():
     i, j = np.array([0, 1, 3, 6, 10.0]), np.array([0, 2.0])
     V = np.stack([*map(np.ravel, np.meshgrid(i, j, indexing="ij")), np.zeros(10)], axis=1)
     Q = mesh.grid_quads(4, 1)
-    rgb, legend = look.shading("size", V, Q, np.zeros(4))
+    rgb, legend = look.shading("size", V, Q, None)
     assert np.allclose(in_words(legend), np.linspace(2**0.5, 8**0.5, 5), atol=0.005)
     brightness = rgb.astype(int).sum(axis=1)
     assert np.all(np.diff(brightness) < -50)  # larger is darker
     for k, (colour, _) in ((0, legend[0]), (3, legend[-1])):
         assert colour == "rgb({},{},{})".format(*rgb[k])
-    rgb, legend = look.shading("size", *mesh_of_squares(), np.zeros(9))
+    rgb, legend = look.shading("size", *mesh_of_squares(), None)
     assert len(legend) == 1 and legend[0][1] == "all 1" and len(np.unique(rgb, axis=0)) == 1
 
 
@@ -51,7 +51,7 @@ def mesh_of_squares():
 def test_faces_are_shaded_by_their_planarity_in_percent_and_flat_ones_are_alike():
     V, Q = mesh_of_squares()
     V[0, 2] += 0.2
-    rgb, legend = look.shading("planarity", V, Q, np.zeros(9))
+    rgb, legend = look.shading("planarity", V, Q, None)
     off = 100 * measure.planarity(V, Q)
     d = np.array([1.0, 1, -0.2]), np.array([1.0, -1, 0])  # of the first face
     normal = np.cross(*d) / np.linalg.norm(np.cross(*d))
@@ -238,4 +238,15 @@ def test_the_angles_that_are_offered_are_near_and_nothing_is_tried_when_it_must_
     assert remedy.remedies(choice, going=lambda: False) == []
     assert time.monotonic() - start < 0.5
     assert remedy.words({"theta": 62.0, "px": -1.5}) == "\u03b8 = 62\u00b0, pole x = \u22121.5"
-    assert not built(m=5, n=4).is_faulty
+    assert not built(m=5, n=4).is_faulty and not Session().is_faulty
+
+
+def test_where_there_never_was_a_net_that_of_an_offer_stands_in_and_the_problem_stays():
+    found = Session()
+    found.change(kind="cover", source="file", quads=60)
+    found.search(found.begin())
+    choice, problem = found.choice, found.problem
+    assert problem and found.V is None
+    found.stand_in(source="roof")
+    assert (found.choice, found.problem) == (choice, problem) and found.is_faulty
+    assert found.shown.source == "roof" and len(found.Q) > 30

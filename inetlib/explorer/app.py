@@ -207,6 +207,7 @@ class App:
         self._plates()
         self.play.mend()
         if session.V is None:
+            self.play.alone()
             return
         shade, state.legend = session.shading()
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade, session.cover)

@@ -1,6 +1,7 @@
 """What a net looks like in the explorer: its cells, curves, colours, and pictures of it."""
 
 import io
+from collections.abc import Callable
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -61,13 +62,14 @@ def _legend(colours, words):
     return [(f"rgb({r},{g},{b})", w) for (r, g, b), w in zip(colours.tolist(), words, strict=True)]
 
 
-def shading(name: str, V: np.ndarray, Q: np.ndarray, off: np.ndarray) -> tuple:
+def shading(name: str, V: np.ndarray, Q: np.ndarray, deviations: Callable) -> tuple:
     """What the faces are shaded by: RGB bytes (f, 3), and the scale as that of `scale`.
 
-    "deviation": off (f,), degrees; "size": the root of the area, in units of V; "planarity": the
-    distance of the diagonals over their mean length; "none": None, []."""
+    "deviation": the largest of deviations(), (2, f), degrees; "size": the root of the area, in
+    units of V; "planarity": the distance of the diagonals over their mean length; "none": None,
+    []."""
     if name == "deviation":
-        return shades(off), scale()
+        return shades(np.abs(deviations()).max(axis=0)), scale()
     if name == "size":
         d1, d2 = measure.vectors(V, Q)[:2]
         sizes = np.sqrt(np.linalg.norm(np.cross(d1, d2), axis=1) / 2)

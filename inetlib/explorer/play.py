@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import measure
-from . import look, plates, probe, remedy
+from . import look, plates, probe, remedy, scene
 from .choices import NAMES, SHOWN
 from .history import History, differing
 
@@ -123,11 +123,23 @@ class Play:
     def compare(self):
         """Put the surface that is covered, and the ghost, into the scene."""
         app, palette = self.app, look.DARK if self.app.state.dark else look.LIGHT
+        app.scene.plotter.set_background(palette.background)
         app.scene.behind.show(self._surface(), self.ghost, app.scene.origin, palette)
 
     def _surface(self):
         session = self.app.session
-        return session.target if session.choice.target else None
+        one, two = ((x.kind, x.source) for x in (session.choice, session.shown))
+        old = session.V is not None and one != two  # the net before, on something else
+        return session.target if session.choice.target and not old else None
+
+    def alone(self):
+        """Where there is no net yet, show the surface."""
+        app, surface = self.app, self.app.session.target
+        if surface is not None:
+            self.compare()
+            app.view.update()
+            sight = scene.sight("cover", None)
+            app.view.push_camera(app.scene.camera(surface.points, *sight, app.aspect))
 
     def extent(self):
         """The points that shall be seen: of the net, and of the surface below it."""
@@ -136,10 +148,10 @@ class Play:
 
     def touch(self, how: str, camera: dict | None = None, x: float = 0, y: float = 0):
         """Show a face: the one "at" x, y of the camera (`probe.seen`), in the "middle" of it, the
-        "next" or "previous" one; "none": the whole net again."""
+        "next" or "previous" one; "none": the whole net again.  Returns whether there is a face."""
         session, before = self.app.session, self.face
         if session.V is None:
-            return
+            return False
         V = session.V - self.app.scene.origin
         if how == "none":
             self.face = None
@@ -153,6 +165,7 @@ class Play:
             self.show()
             if self.face is None:
                 self.app.state.parallelogram_svg = plates.parallelogram(*self.app.session.angles)
+        return self.face is not None
 
     def show(self):
         """Say what there is to say of the face that is touched."""

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from .. import measure
+from ..design import report
+from ..design.report import Report
 from . import choices, nets
 from .choices import Choice
 
@@ -30,12 +31,10 @@ NAMES = {
 NAMES |= choices.WORDS | {"source": "surface", "openings": "hole"}
 
 
-def is_good(V: np.ndarray, Q: np.ndarray, choice: Choice) -> bool:
+def is_good(about: Report, kind: str) -> bool:
     """Whether a net has no flips and no darts, and the angles that an optimisation was to reach."""
-    quality = measure.quality(V, Q)
-    wanted = np.radians([choice.theta, choice.theta0])
-    exact = choice.kind not in nets.FOUND or measure.deviations(V, Q, *wanted).max() < CLOSE
-    return bool(exact and not quality.flips and not quality.darts)
+    exact = kind not in nets.FOUND or about.max_deviation < CLOSE
+    return exact and about.flips == about.darts == 0
 
 
 def remedies(choice: Choice, surface: Any = None, going: Callable = lambda: True) -> list[dict]:
@@ -70,8 +69,10 @@ def _works(choice, values, surface, going):
     if problems or new == choice or not going():
         return False
     try:
-        V, Q, *_ = nets.make(new, surface, lambda *_: going())
-        return is_good(V, Q, new)
+        V, Q, _, cover = nets.make(new, surface, lambda *_: going())
+        theta, theta0 = np.radians([new.theta, new.theta0])
+        about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
+        return is_good(about, new.kind)
     except (ValueError, ArithmeticError, MemoryError):
         return False
 

@@ -57,7 +57,7 @@ class Session:
     def is_faulty(self):
         """Whether there is no net of the choice, or one that is not as it was asked for."""
         stopped = self.run is not None or self.given or "stopped" in self.message
-        good = self.V is not None and remedy.is_good(self.V, self.Q, self.shown)
+        good = self.report is None or remedy.is_good(self.report, self.shown.kind)
         return bool(self.problem) or not (stopped or good)
 
     @property
@@ -153,8 +153,7 @@ class Session:
 
     def shading(self):
         """RGB bytes a face (f, 3), or None, and the legend: `look.shading` as chosen."""
-        off = np.abs(self.deviations()).max(axis=0)
-        return look.shading(self.choice.shade, self.V, self.Q, off)
+        return look.shading(self.choice.shade, self.V, self.Q, self.deviations)
 
     def code(self):
         """Three lines of Python that make the net of the choice: V, Q."""

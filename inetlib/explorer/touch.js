@@ -29,15 +29,13 @@ Object.assign(window.inet, {
     return this.touch("at", (2 * x) / box.height, (2 * y) / box.height);
   },
   async hold(event) {
-    await this.at(event);
-    this.held = Boolean(window.trame.state.get("face")?.name);
+    this.held = await this.at(event);
   },
   async step(event) {
     const how = { Enter: "middle", n: "next", p: "previous", Escape: "none" }[event.key];
     if (!how || event.ctrlKey || event.metaKey || event.target.closest("button")) return;
     event.preventDefault();
-    await this.touch(how, 0, 0);
-    this.held = how !== "none";
+    this.held = await this.touch(how, 0, 0);
   },
   undo(event) {
     const key = event.key.toLowerCase();
@@ -53,11 +51,13 @@ Object.assign(window.inet, {
     return this.answer;
   },
   async ask() {
+    let touched = false; // whether there is a face
     while (this.question) {
       const question = this.question;
       this.question = null;
-      await window.trame.trigger("touch", question);
+      touched = await window.trame.trigger("touch", question);
     }
+    return touched;
   },
   sight() {
     const { position, focalPoint, viewUp, parallelScale } = this.view().getCamera();

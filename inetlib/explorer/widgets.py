@@ -24,9 +24,8 @@ def face() -> None:
         for name, words in ANGLES:
             with html.Tr():
                 html.Td(words)
-                html.Td(
-                    f"{{{{ face.{name} || numbers.{name} }}}}\u00b0", classes=f"out-face-{name}"
-                )
+                asked = f"Number(Number({name}).toPrecision(10))"
+                html.Td(f"{{{{ face.{name} || {asked} }}}}\u00b0", classes=f"out-face-{name}")
                 off = f"face.name ? 'off by ' + face.{name}_off + '\u00b0' : 'asked for'"
                 html.Td(f"{{{{ {off} }}}}", classes=f"out-face-off-{name}")
 
