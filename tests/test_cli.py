@@ -10,6 +10,7 @@ import types
 from itertools import pairwise
 from pathlib import Path
 
+import igl
 import numpy as np
 import pytest
 from test_repair import sheet
@@ -431,6 +432,11 @@ def test_optimize_meets_the_angles_near_a_reference(inet):
     words = ["optimize", "patch.obj", *ANGLES, "--reference", "patch.obj", "--on-surface"]
     found = numbers(inet(*words, "-o", "a.obj", "--json"))
     assert found["converged"] and found["deviation"] < 1e-8 and found["file"] == "a.obj"
+    off = igl.point_mesh_squared_distance(io.net("a.obj").V, V, mesh.triangles(V, Q)[1])[0] ** 0.5
+    far = [found["distance_mean"], found["distance_max"]]
+    assert far == pytest.approx([off.mean(), off.max()], abs=1e-9) and "distance_mean" in found
+    far = numbers(inet(*words[:-1], "-o", "b.obj", "--json"))["distance_max"]
+    assert found["distance_max"] < far / 10
     again = numbers(inet("measure", "a.obj", *ANGLES, "--json"))
     assert again["deviation"] == pytest.approx(found["deviation"], abs=1e-9)
 

@@ -41,6 +41,7 @@ HELP = {  # what a command does, and examples: the first of its own stands in th
         inet show vase.obj --open""",
     "explore": """Turn the angles of a net in the browser, on this machine only.
         inet explore --open
+        inet explore skylight --open
         inet explore roof.obj --port 8000""",
     "web": """An exact net on a surface of revolution.
         inet web --profile vase --theta 75 --theta0 60 -m 24 -o vase.obj
@@ -172,7 +173,11 @@ def misspelt(words: list[str], top: Parser, known: dict[str, Parser]) -> None:
 
 
 def _completion_options(command):
-    command.add_argument("shell", choices=completion.SHELLS, help="whose script is printed")
+    command.add_argument(
+        "shell",
+        choices=completion.SHELLS,
+        help='whose script is printed, for eval "$(inet completion bash)"',
+    )
 
 
 def _completion(given):
