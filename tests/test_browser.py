@@ -234,7 +234,7 @@ def test_what_is_saved_is_what_is_shown(tab, tmp_path):
             reader.page.locator(".v-list-item", has_text=suffix[1:].upper()).click()
         path = tmp_path / waiting.value.suggested_filename
         waiting.value.save_as(path)
-        assert path.suffix == suffix
+        assert path.name == f"vase_75_60{suffix}"
         return path
 
     V, Q = judge(reader)
@@ -412,6 +412,8 @@ def test_a_file_of_the_command_line_is_covered_and_sigint_ends_everything(chromi
         page = chromium.new_page()
         reader = Reader(page, address, "quads=120&theta=70&theta0=60&kind=cover&source=file")
         assert "converged in" in reader.text(".out-message")
+        assert page.title().startswith("my roof 70 60")
+        assert page.locator(".in-source", has_text="my roof.obj").is_visible()
         V, Q = judge(reader)
         assert mesh.is_labelled(Q) and 60 < len(Q) < 240 and len(V) == Q.max() + 1
         reader.type("quads", "4000")  # a search is under way when it ends

@@ -167,6 +167,31 @@ def test_an_angle_may_be_written_as_on_paper_and_any_number_with_a_comma():
         assert f"{value!r}: a " in refused(name, value)
 
 
+def test_a_net_is_named_after_what_it_is_made_from_and_its_unit_is_said(tmp_path):
+    names = {
+        "catenoid": {"kind": "isothermal"},
+        "helicoid": {"kind": "isothermal", "bend": 90},
+        "minimal_image": {"kind": "isothermal", "bend": 20, "moebius": 1},
+        "sphere": {"kind": "isothermal", "surface": "sphere"},
+        "barrel": {"kind": "revolution", "radii": "barrel"},
+        "revolution": {"kind": "revolution", "radii": "1,1,1,1,1,1,1.1"},
+        "square": {"map": "square"},
+        "patch": {"kind": "freeform"},
+        "saddle": {"kind": "cover", "source": "saddle"},
+    }
+    for name, values in names.items():
+        made = Session()
+        assert made.change(**values) == [] and made.name == name and "no unit" in made.unit
+    made = Session(net=surfaces.freeform_patch(3, 3))
+    assert made.name == "net" and "no unit" in made.unit
+    path = tmp_path / "my roof.obj"
+    io.write(path, *examples.wavy_roof(6))
+    made = Session(io.surface(path), path)
+    assert made.name == "my roof" and "my roof.obj" in made.unit
+    made.change(kind="plane")
+    assert made.name == "exp" and "no unit" in made.unit
+
+
 def test_each_kind_opens_with_its_own_size_unless_one_is_asked_for():
     def sizes(choice):
         return choice.m, choice.n

@@ -5,6 +5,7 @@ import time
 import traceback
 from functools import partial
 from math import atan2, hypot
+from pathlib import Path
 
 from trame.app import get_server
 from trame.app.core import AVAILABLE_SERVERS
@@ -19,7 +20,7 @@ PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
 NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
-TEXTS = "alert", "problem", "message", "progress", "code", "link"
+TEXTS = "alert", "problem", "message", "progress", "code", "link", "stem", "unit"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
 OFF = "dark", "searching", "can_search", "code_open", "help_open", "presets_open", "has_one_hole"
 
@@ -37,6 +38,9 @@ class App:
         self.state.trame__title = "Isogonal nets"
         self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
         self.state.numbers, self.state.legend = {}, []
+        known = choices.OPTIONS["source"] | {"file": path and Path(path).name}
+        items = [{"title": words, "value": key} for key, words in known.items() if words]
+        self.state.source_items = items
         self._dress()
         self._echo()
         self.play = Play(self)
@@ -226,6 +230,9 @@ class App:
         choice, state = self.session.choice, self.state
         state.parallelogram_svg = plates.parallelogram(*self.session.angles)
         state.profile_svg = plates.profile(choice.radii)
+        angles = [f"{angle:.6g}" for angle in (choice.theta, choice.theta0)]
+        state.stem, state.unit = "_".join([self.session.name, *angles]), self.session.unit
+        state.trame__title = f"{state.stem.replace('_', ' ')} \u2013 isogonal nets"
         state.code, state.link = self.session.code(), choices.link(choice)
         state.has_one_hole = self.session.has_one_hole
         if self.server.protocol and not self.session.given:

@@ -238,6 +238,17 @@ def _parts(value):
     return list(value) if isinstance(value, (list, tuple, set, dict)) else [value]
 
 
+def name(choice: Choice) -> str:
+    """What the net of a choice is called, in a word that a file's name may have."""
+    if choice.kind == "isothermal":
+        minimal = {0: "catenoid", 90: "helicoid"}.get(choice.bend, "minimal")
+        found = minimal if choice.surface == "minimal" else choice.surface
+        return found + "_image" * choice.moebius
+    known = {radii: word for word, radii in PROFILES.items()}
+    words = {"plane": choice.map, "revolution": known.get(choice.radii, "revolution")}
+    return words.get(choice.kind, "patch" if choice.kind == "freeform" else choice.source)
+
+
 def link(choice: Choice) -> str:
     """The choice as URL parameters: what its kind uses, and what is shown."""
     names = ("kind", "theta", "theta0", "lock", *USES[choice.kind], *SHOWN)

@@ -26,7 +26,7 @@ window.inet = {
   },
   async save(suffix, mime) {
     const data = await window.trame.trigger("save", [suffix, this.camera()]);
-    if (data) window.trame.utils.download(`net${suffix}`, data, mime);
+    if (data) window.trame.utils.download(window.trame.state.get("stem") + suffix, data, mime);
   },
   turn(right, up) {
     // Around the point in the middle; z stays upright, as with the mouse it need not.

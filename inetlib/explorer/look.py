@@ -95,6 +95,12 @@ def line_width(quads: int) -> float:
     return 3 if quads < 200 else 2 if quads < 2000 else 1 if quads < 6000 else 0.5
 
 
+def ink(colour: str, face: str, quads: int) -> np.ndarray:
+    """The RGB of a curve, of parts of 1: fainter where so many quads run together."""
+    part = 0.0 if quads < 6000 else 0.45
+    return (1 - part) * np.array(to_rgb(colour)) + part * np.array(to_rgb(face))
+
+
 class Layout(NamedTuple):
     """What is filled and drawn of a net, by vertex numbers.
 

@@ -31,6 +31,7 @@ class Recipe(NamedTuple):
     take: str = "V, Q = {net}"
 
 
+SAMPLED = "sampled from a smooth net: faces of half the size are off by a quarter as much"
 GRID = "z = conformal.sheared_grid({theta}, {theta0}, {m}, {n}, {origin}, {edge})"
 ROLLED = "z = developable.rolled_grid({theta}, {theta0}, {m}, {n}, {curvature}, {origin}, {edge})"
 MAPS = {
@@ -89,26 +90,24 @@ def _recipe(choice):
 
 
 def _plane(name):
-    start, message = GRID, "exact: this map keeps both angles of finite quads (B6)"
+    start, message = GRID, "exact: with this map faces of any size have both angles"
     if name == "exp":
         start = GRID.replace("{edge}", "{edge}, kappa=1")
     if name in ("inverse", "moebius"):
-        message = (
-            "conformal image: the angles are those of a smooth net, up to the square of the edge"
-        )
+        message = SAMPLED
     return Recipe("conformal", start, f"conformal.quads({MAPS[name]})", message)
 
 
 def _isothermal(name, inverted):
     rooms, start, points = "mesh, conformal, surfaces", GRID, POINTS[name]
-    message = "sampled from a smooth net: off by about the square of the edge"
+    message = SAMPLED
     if name == "rolled":
         rooms, start = "mesh, developable", ROLLED
         message = "exact: both angles hold on the bent sheet"
     if inverted:
         rooms += ", moebius"
         points = "moebius.apply(moebius.inversion(({px}, {py}, {pz})), " + points + ")"
-        message = "sampled from a smooth net, then inverted in a sphere around the pole"
+        message = SAMPLED + "; then inverted in a sphere around the pole"
     return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
 
 

@@ -200,6 +200,8 @@ def _numbers():
         with html.Tr():
             html.Td("medial lines")
             html.Td("{{ numbers.size_low }} to {{ numbers.size_high }}", colspan=2)
+        with html.Tr():
+            html.Td("{{ unit }}", colspan=3, classes="ex-small out-unit")
         widgets.covered()
     widgets.compared()
     words = "these numbers belong to \u03b8 = {{ numbers.theta }}\u00b0, "
@@ -217,6 +219,7 @@ def _bar(given):
             with v3.Template(v_slot_activator="{ props }"):
                 _button("mdi-download", "Save", "in-save", v_bind="props")
             with v3.VList(density="compact"):
+                v3.VListSubheader("{{ stem }}. {{ unit }}")
                 for suffix in SAVED:
                     _saved(suffix, missing(suffix))
         if not given:

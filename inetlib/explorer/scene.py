@@ -64,7 +64,8 @@ class Scene:
         if new:
             cells = plan.quads, plan.triangles, plan.cut
             lines = plan.lines or {"none": np.zeros((1, 2), dtype=np.int64)}
-            colours = [to_rgb(palette.families.get(name, palette.face)) for name in lines]
+            found = [palette.families.get(name, palette.face) for name in lines]
+            colours = [look.ink(colour, palette.face, len(Q)) for colour in found]
             rgb = np.repeat(np.round(255 * np.array(colours)), [*map(len, lines.values())], axis=0)
             pairs = _counted(np.concatenate(list(lines.values())))
             self._cells(np.concatenate([*map(_counted, cells)]), pairs, fills, rgb)

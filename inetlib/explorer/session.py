@@ -49,6 +49,21 @@ class Session:
         return problems
 
     @property
+    def name(self):
+        """What the net is called: a name for files, without angles."""
+        given = self.given or (self.choice.kind, self.choice.source) == ("cover", "file")
+        return (
+            (Path(self.path).stem if self.path else "net") if given else choices.name(self.choice)
+        )
+
+    @property
+    def unit(self):
+        """What lengths are measured in, a sentence."""
+        if (self.choice.kind, self.choice.source) == ("cover", "file") and self.path:
+            return f"Lengths are in the unit of {Path(self.path).name}."
+        return "Lengths have no unit."
+
+    @property
     def must_search(self):
         """Whether the net of the choice is found by optimisation."""
         return self.choice.kind in nets.FOUND and not self.given

@@ -219,15 +219,15 @@ def _result(log, ours):
     """The `Result` of the best net."""
     given, count = log.given, len(log.history) - 1
     best, V, s = log.best
-    good = bool(best.key <= (0, log.tolerance))
+    good, steps = bool(best.key <= (0, log.tolerance)), f"{count} step{'s' * (count != 1)}"
     if good:
-        words = f"converged in {count} steps"
+        words = f"converged in {steps}"
     elif log.stopped:
-        words = f"stopped by the caller after {count} steps"
+        words = f"stopped by the caller after {steps}"
     elif best.key[0]:
-        words = f"not converged in {count} steps, every net on the way had flipped faces or darts"
+        words = f"not converged in {steps}, every net on the way had flipped faces or darts"
     else:
-        words = f"not converged in {count} steps, this is the best net without flips and darts"
+        words = f"not converged in {steps}, this is the best net without flips and darts"
     shape = map(float, (*np.exp(logs(given.goal, s)[0]), *angles(given.goal, s)))
     sizes = V.size + len(s), 2 * len(given.Q)
     if not ours:
