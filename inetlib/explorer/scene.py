@@ -1,7 +1,6 @@
 """The net as a pyvista scene that the browser draws: no OpenGL is needed where Python runs."""
 
 import numpy as np
-from matplotlib.colors import to_rgb
 
 from .. import view
 from . import look
