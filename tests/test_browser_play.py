@@ -19,7 +19,7 @@ def reader(chromium, tmp_path_factory):
     """One tab for all tests here; each begins with its own link."""
     folder = tmp_path_factory.mktemp("empty")
     process, address = start(folder=folder, environment=os.environ.copy())
-    page = chromium.new_page(viewport={"width": 1000, "height": 640})
+    page = chromium.new_page(viewport={"width": 1000, "height": 640}, has_touch=True)
     found = Reader(page, address, "m=8&n=10")
     yield found
     page.close()
@@ -113,12 +113,8 @@ def test_a_click_holds_a_face_that_follows_the_camera_and_the_angles(reader):
 def test_a_tap_shows_a_face_and_one_beside_the_net_lets_it_go(reader):
     go(reader, kind="plane", map="inverse", m=8, n=10)
     box = reader.page.locator(".ex-view").bounding_box()
-    tap = """([clientX, clientY]) => { for (const name of ['pointerdown', 'pointerup'])
-      document.querySelector('.ex-view canvas').dispatchEvent(new PointerEvent(name,
-        {clientX, clientY, bubbles: true, pointerType: 'touch'})); }"""
     for x, y, on_net in ((0.6, 0.5, True), (0.02, 0.02, False)):
-        place = [box["x"] + x * box["width"], box["y"] + y * box["height"]]
-        reader.page.evaluate(tap, place)
+        reader.page.touchscreen.tap(box["x"] + x * box["width"], box["y"] + y * box["height"])
         reader.settled()
         assert (face(reader) is not None) is on_net
         assert bool(reader.text(".ex-chip")) is on_net

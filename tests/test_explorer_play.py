@@ -132,6 +132,9 @@ def test_undo_and_redo_go_through_the_choices_and_a_drag_is_one():
         past.take(replace(first, theta=61.0 + k), 10 + 0.1 * k)
     past.take(replace(first, theta=65.0, m=7), 10.5)
     past.take(replace(first, theta=65.0, m=8), 19.0)  # after a rest
+    past.take(replace(first, theta=65.0, m=9), 30.0, 1)
+    past.take(replace(first, theta=65.0, m=10), 90.0, 1)  # a slow drag
+    assert past.undo().m == 8
     assert [past.undo().m for _ in range(2)] == [7, first.m]
     assert past.undo() == past.undo() == first
     assert past.redo() == replace(first, theta=65.0) and past.redo().m == 7

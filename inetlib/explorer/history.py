@@ -11,15 +11,18 @@ class History:
 
     def __init__(self, first: Choice):
         self.past, self.next = [first], []
-        self._names, self._time = set[str](), 0.0
+        self._names, self._time, self._drag = set[str](), 0.0, 0
 
-    def take(self, choice: Choice, now: float) -> None:
-        """A new choice at a time in seconds; after it there is nothing to redo."""
+    def take(self, choice: Choice, now: float, drag: int = 0) -> None:
+        """A new choice at a time in seconds, in the drag of this number, 0 in none.
+
+        After it there is nothing to redo."""
         names = differing(self.past[-1], choice)
         if not names:
             return
-        one = names == self._names and now - self._time < PAUSE
-        self._names, self._time = names, now
+        near = now - self._time < PAUSE or 0 < drag == self._drag
+        one = names == self._names and near
+        self._names, self._time, self._drag = names, now, drag
         self.past[-1 if one else len(self.past) :] = [choice]
         del self.past[:-MOST], self.next[:]
 

@@ -24,7 +24,7 @@ class Play:
         self.ghost = None  # V, Q of a net that is kept
         self._trial = self._asked = None  # changes that make a net: looked for, for what values
         off = dict.fromkeys(("can_undo", "can_redo", "marking"), False)
-        app.state.update(off | {"face": {}, "ghost": {}, "remedies": [], "marks": []})
+        app.state.update(off | {"drag": 0, "face": {}, "ghost": {}, "remedies": [], "marks": []})
         app.state.change("marking")(lambda **_: self.mark())
         for call in (self.touch, self.undo, self.redo, self.keep, self.forget, self.change):
             app.server.trigger(call.__name__)(call)
@@ -36,7 +36,7 @@ class Play:
 
     def changed(self):
         """The choice is another one."""
-        self.history.take(self.app.session.choice, time.monotonic())
+        self.history.take(self.app.session.choice, time.monotonic(), self.app.state.drag)
         self._offer()
 
     def _offer(self):

@@ -19,6 +19,10 @@ Object.assign(window.inet, {
     });
     view.addEventListener("keydown", (e) => this.step(e));
     document.addEventListener("keydown", (e) => this.undo(e));
+    let drags = 0;
+    const drag = (number) => window.trame.state.set("drag", number);
+    document.addEventListener("pointerdown", (e) => e.target.closest(".v-slider") && drag((drags += 1)), true);
+    document.addEventListener("pointerup", () => drag(0), true);
     window.trame.state.watch(["face", "marks"], (face, marks) => this.follow(face, marks));
   },
   at(event) {
