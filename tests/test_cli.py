@@ -36,6 +36,12 @@ def inet(capsys, tmp_path, monkeypatch):
 
 
 @pytest.fixture
+def coarse(monkeypatch):
+    """Pictures take less time."""
+    monkeypatch.setattr("inetlib.explorer.look.PIXELS", 120)
+
+
+@pytest.fixture
 def web(inet):
     """A small exact net in web.obj."""
     code, _, err = inet("web", "--profile", "sphere", *ANGLES, "-m", 12, "-n", 4, "-o", "web.obj")
@@ -117,7 +123,7 @@ def test_help_and_wrong_input_load_nothing_slow(tmp_path):
 
 
 @pytest.mark.parametrize("command", cli.TEXTS)
-def test_every_help_text_shows_its_examples_and_they_run(inet, command):
+def test_every_help_text_shows_its_examples_and_they_run(inet, coarse, command):
     code, out, err = inet(command, "--help")
     assert (code, err) == (0, "") and max(len(line) for line in out.splitlines()) <= 100
     io.write("roof.obj", *examples.wavy_roof(15))
@@ -209,7 +215,7 @@ def test_the_examples_are_those_that_the_commands_know(inet):
             assert f"  {name:16}{words}\n" in out and words.startswith(("A ", "An ", "The "))
 
 
-def test_a_picture_of_a_net_or_a_surface_is_drawn_and_not_overwritten(inet, web):
+def test_a_picture_of_a_net_or_a_surface_is_drawn_and_not_overwritten(inet, coarse, web):
     V, Q, polygon = mesh.polygon_rings(5, 2)
     io.write("five.obj", V, Q, polygons=[polygon])
     for words in (["roof", "-o", "a.png"], [web, "-o", "a.svg", "--view", "-30,20"]):
@@ -225,6 +231,10 @@ def test_a_picture_of_a_net_or_a_surface_is_drawn_and_not_overwritten(inet, web)
     found = numbers(inet("show", "five.obj", "-o", "a.png", "--force", "--json"))
     assert (found["vertices"], found["faces"]) == (len(V), len(Q) + 1)
     assert "no consistent u/v labelling" in found["notes"][0]
+    corners, wings = np.eye(4)[:, :3], [[0, 1, 2], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    io.write("closed.obj", corners, np.array(wings))  # no surface to cover, but one to look at
+    assert inet("show", "closed.obj", "-o", "closed.svg")[0] == 0
+    assert refused(inet("show", "closed.obj"), "(with -o FILE.png it is drawn as it is)")
 
 
 TRY = """
@@ -619,7 +629,7 @@ SAID = {
 }
 
 
-def test_the_readme_documents_what_json_says(inet):
+def test_the_readme_documents_what_json_says(inet, coarse):
     table = (project.ROOT / "README.md").read_text(encoding="utf-8").partition("| field | of |")[2]
     rows = re.findall(r"^\| (`.*`) \| ([a-z, ]+) \| .+ \|$", table, re.M)
     documented = {name: set() for name in [*SAID, "figures", "explore"]}

@@ -64,17 +64,16 @@ def _explore_options(command):
 
 
 def _explore(given):
-    surface, query = None, ""
-    if given.surface:
-        from .. import examples, io, repair
+    from .. import examples, io, repair
 
-        if given.surface in examples.SURFACES:
-            query = f"?kind=cover&source={given.surface}"
-        else:
-            surface = options.surface(given)
-            with io.named(given.surface, surface.V, counted=False):
-                repair.clean(surface.V, surface.F)  # refuses what cannot be covered
-    _serve(given, surface, given.surface if surface else None, query)
+    if not given.surface:
+        return _serve(given, None, None)
+    if given.surface in examples.SURFACES:
+        return _serve(given, None, None, f"?kind=cover&source={given.surface}")
+    surface = options.surface(given)
+    with io.named(given.surface, surface.V, counted=False):
+        repair.clean(surface.V, surface.F)  # refuses what cannot be covered
+    return _serve(given, surface, given.surface)
 
 
 def _serve(given, surface, path, query="", **more):
@@ -133,7 +132,11 @@ def _show(given):
     if given.output is None:
         if F.shape[1] == 4:
             return _serve(given, None, given.surface, net=(V, F))
-        return _explore(given)
+        try:
+            return _explore(given)
+        except ValueError as error:
+            words = "with -o FILE.png it is drawn as it is"
+            raise ValueError(f"{error} ({words})") from error
     with options.stage(given, "drawing"), files.replacing(path) as new:
         new.write_bytes(_picture(given, V, F, polygons))
     counts = {"vertices": len(V), "faces": len(F) + len(polygons)}
@@ -144,19 +147,20 @@ def _show(given):
 
 def _read(given):
     """(V, quads or triangles, polygons, notes) of a net or a surface."""
-    from .. import examples, io, mesh
+    from .. import examples, io, mesh, repair
 
-    if given.surface not in examples.SURFACES:
-        with options.stage(given, f"reading {given.surface}"):
-            is_net = any(len(face) == 4 for face in io.read(given.surface)[1])
-        if is_net:
-            V, Q, polygons = io.net(given.surface)
-            try:
-                return V, mesh.label(Q), polygons, []
-            except ValueError as reason:
-                return V, Q, polygons, [f"{reason}; u and v are as in the file"]
-    V, F, notes = options.surface(given)
-    return V, F, [], notes
+    if given.surface in examples.SURFACES or not Path(given.surface).suffix:
+        return *options.surface(given)[:2], [], []
+    with options.stage(given, f"reading {given.surface}"):
+        V, F = io.read(given.surface)
+    if all(len(face) != 4 for face in F):  # as it is, whether or not it can be covered
+        with io.named(given.surface, V):
+            return V, repair.triangulate(V, F), [], []
+    V, Q, polygons = io.net(given.surface)
+    try:
+        return V, mesh.label(Q), polygons, []
+    except ValueError as reason:
+        return V, Q, polygons, [f"{reason}; u and v are as in the file"]
 
 
 def _picture(given, V, F, polygons):
@@ -170,8 +174,9 @@ def _picture(given, V, F, polygons):
     camera = plot.camera(*np.radians(given.view or (TOP if flat else ROUND)))
     form = Path(given.output).suffix[1:].lower()
     if F.shape[1] == 3:
-        rims = [V[np.append(loop, loop[0])] for loop in mesh.boundary_loops(F)]
-        lines = [(rim, look.LIGHT.families["rim"], 1.2) for rim in rims]
+        sides = np.sort(np.stack(mesh.half_edges(F), axis=1), axis=1)
+        rims, times = np.unique(sides, axis=0, return_counts=True)
+        lines = [(V[rim], look.LIGHT.families["rim"], 1.2) for rim in rims[times != 2]]
         return look.drawn([(V, F, look.LIGHT.face)], lines, camera, form)
     none = np.empty((0, 2), dtype=np.int64)
     cover = design.Cover(V, F, None, polygons, {"u": none, "v": none}) if polygons else None
