@@ -291,9 +291,9 @@ async def test_a_search_runs_to_its_end(app, quick, values):
     assert np.array_equal(app.session.V, alone.V)
 
 
-async def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(app, gate):
+async def test_the_steps_of_a_search_are_seen_and_stop_keeps_the_best_net(app, app_module, gate):
     app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-    await until(lambda: app.state.progress == "start")
+    await until(lambda: app.state.progress == app_module.BEGUN)
     start = surfaces.freeform_patch(5, 5)[0]
     assert np.array_equal(app.session.V, start) and app.state.searching
     assert app.state.numbers["quads"] == "25"
@@ -314,7 +314,7 @@ async def test_stop_is_heard_before_the_first_step(app, app_module, quick, monke
     assert not app.session.message.startswith("converged")
 
 
-async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, gate):
+async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, app_module, gate):
     over, search = threading.Event(), app.session.search
 
     def searched(*args):
@@ -323,7 +323,7 @@ async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, 
 
     app.session.search = searched
     app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-    await until(lambda: app.state.progress == "start")
+    await until(lambda: app.state.progress == app_module.BEGUN)
     await change(app, kind="plane")
     await until(lambda: not app.state.searching)
     alone = built(m=5, n=5, theta=100)
@@ -335,10 +335,10 @@ async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, 
     assert app.state.message == alone.message and not app.state.searching
 
 
-async def test_closing_a_tab_ends_its_search(serve, run, gate):
+async def test_closing_a_tab_ends_its_search(serve, run, app_module, gate):
     async with opened(serve, "closing") as app:
         app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
-        await until(lambda: app.state.progress == "start")
+        await until(lambda: app.state.progress == app_module.BEGUN)
         search = app.session.run
         assert not search.stopped
     assert search.stopped
@@ -371,6 +371,40 @@ async def test_a_file_is_covered_in_every_tab_and_named_in_the_code(serve, run, 
         await until(lambda: app.state.message.startswith("converged"))
         assert (app.state.kind, app.state.source) == ("cover", "file")
         assert str(path) in app.state.code
+
+
+async def test_a_surface_is_made_ready_once_while_others_work_and_whoever_waits_can_stop(
+    serve, run, quick, monkeypatch
+):
+    made, free, ready = [], threading.Event(), design.ready
+
+    def slow(*args):
+        made.append(args)
+        free.wait(LIMIT)
+        return ready(*args)
+
+    monkeypatch.setattr(design, "ready", slow)
+    surface = io.Surface(*examples.wavy_roof(12), [])
+    async with (
+        opened(serve, "one", surface=surface) as one,
+        opened(serve, "two", surface=surface) as two,
+    ):
+        one.arrive("?quads=60", False, 1.0)
+        await until(lambda: one.state.progress.startswith("flattening"))
+        await arrived(two, "?kind=plane&m=4&n=4")  # it is not kept waiting
+        one.stop()
+        await until(lambda: not one.state.searching)
+        assert "stopped" in one.state.problem and one.session.V is None
+        assert one.state.remedies == []  # there is nothing wrong with the choice
+        for theta in (61, 62, 63):  # nobody waits for a run that is over
+            await change(one, theta=theta)
+            await until(lambda: one.state.progress.startswith("flattening"))
+        free.set()
+        await until(lambda: not one.state.searching)
+        assert one.state.numbers["theta"] == "63" and one.state.problem == ""
+        await change(two, kind="cover", source="file", quads=80)
+        await until(lambda: two.state.message.startswith("converged"))
+        assert len(made) == 1
 
 
 async def test_a_given_net_is_shown_and_never_changed(serve, run):

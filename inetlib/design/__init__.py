@@ -48,6 +48,7 @@ class Ground(NamedTuple):
     goal: reference.Reference
     V: np.ndarray  # (n, 3) vertices that were flattened
     flat: flatten.Flat
+    domain: overlay.Domain
     seconds: dict  # {stage: seconds}
 
 
@@ -83,7 +84,8 @@ def ready(
         goal = reference.mesh(surface.V, surface.F)
     with begin("flatten"):
         W, flat = _flatten(surface, filled, boundary)
-    return Ground(surface, goal, W, flat, seconds)
+        domain = overlay.Domain(flat, W)
+    return Ground(surface, goal, W, flat, domain, seconds)
 
 
 def cover(
@@ -127,7 +129,7 @@ def cover(
     callback       (step, V, Q) before the first step of the optimisation (step is None) and
                    after every one (`solver.run.Step`); it may return False to stop
     stage          (name) when one begins, one of STAGES, and often in "grid"; it may
-                   return False to stop: then `Stopped` is raised
+                   return False to stop before there is a net: then `Stopped` is raised
     known          the surface, made `ready` before: V, F, boundary and openings are those of it
 
     The surface is a disk with any number of holes, in one piece; the net has whole quads only
@@ -149,7 +151,8 @@ def cover(
     begin = partial(_stage, seconds, progress, stage)
     with begin("grid") as ask:
         flat, turn = steer.steered(ground.flat, ground.V, along, through, align)
-        domain = overlay.Domain(flat, ground.V)
+        moved = flat is not ground.flat
+        domain = overlay.Domain(flat, ground.V) if moved else ground.domain
         layer = overlay.cover(domain, theta, theta0, count, size, direction + turn, ask)
         edge = cut(domain, layer) if trim else None
         layer = edge.layer if trim else layer
@@ -217,7 +220,7 @@ def _stage(seconds, progress, stage, name):
     """A stage of the way, named by a bar while it lasts; gives what asks whether to go on."""
 
     def ask():
-        if stage is not None and stage(name) is False:
+        if stage is not None and stage(name) is False and name != "report":
             raise Stopped(f"stopped while {STAGES[name]}, before there was a net")
 
     ask()

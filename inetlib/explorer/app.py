@@ -3,6 +3,7 @@
 import asyncio
 import time
 import traceback
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from math import atan2, hypot
 from pathlib import Path
@@ -20,6 +21,7 @@ PACE = 0.12  # seconds that a step of an optimisation is seen at least
 REST = 0.2  # seconds without a change before an optimisation begins
 NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
+BEGUN = "optimising \u2026"
 TEXTS = "alert", "problem", "message", "progress", "code", "link", "stem", "unit"
 DRAWN = "parallelogram_svg", "histogram_svg", "profile_svg"
 OFF = "dark", "searching", "can_search", "code_open", "help_open", "presets_open", "has_one_hole"
@@ -35,6 +37,9 @@ class App:
         self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
         self._task, self._search, self._remake = None, None, False
+        self._worker = ThreadPoolExecutor(
+            1, "search"
+        )  # a new one waits until the old one has ended
         self.state.trame__title = "Isogonal nets"
         self.state.update(dict.fromkeys((*TEXTS, *DRAWN), "") | dict.fromkeys(OFF, False))
         self.state.numbers, self.state.legend = {}, []
@@ -60,6 +65,7 @@ class App:
         for task in (self._task, self._search):
             if task is not None:
                 task.cancel()
+        self._worker.shutdown(wait=False, cancel_futures=True)
         AVAILABLE_SERVERS.pop(self.server.name, None)
         vtk_module.HELPERS_PER_SERVER.pop(self.server.name, None)
         if self.scene is not None:
@@ -191,16 +197,24 @@ class App:
             loop.call_soon_threadsafe(self._frame, run, V, Q, steps)
             time.sleep(PACE)
 
-        await asyncio.to_thread(self.session.search, run, seen)
+        def told(words):
+            loop.call_soon_threadsafe(self._tell, run, words)
+
+        await loop.run_in_executor(self._worker, self.session.search, run, seen, told)
         if self.session.run is None:
             with self.state:
                 self.state.searching = False
                 self._show()
 
+    def _tell(self, run, words):
+        if run is self.session.run and not run.stopped:
+            with self.state:
+                self.state.progress = f"{words} \u2026"
+
     def _frame(self, run, V, Q, steps):
         if self.session.on_the_way(run, V, Q):
             with self.state:
-                self.state.progress = f"step {steps}" if steps else "start"
+                self.state.progress = f"optimising, step {steps}" if steps else BEGUN
                 self._show()
 
     def _show(self):

@@ -1,11 +1,14 @@
 """The nets of the explorer: for each kind three lines of Python, run and printed alike."""
 
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from math import cos, radians
 from typing import NamedTuple
 
 import numpy as np
 
-from .. import examples, parallelogram, repair
+from .. import design, examples, parallelogram
 from .choices import HEIGHTS, Choice
 
 FOUND = "freeform", "cover"  # by optimisation; all others are constructed
@@ -17,6 +20,9 @@ DISKS = {  # centre and radius of the disk that the grid fills, if it is not the
     "sphere": (0, 2.4),
 }
 IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
+PATIENCE = 0.05  # seconds between two questions whether to go on waiting for a surface
+_makers = ThreadPoolExecutor(2, "surfaces")
+_grounds: dict[tuple, tuple] = {}  # {(what surface, whether filled): (it, its `Future`)}
 
 
 class Recipe(NamedTuple):
@@ -111,22 +117,55 @@ def _isothermal(name, inverted):
     return Recipe(rooms, start, points + ".reshape(-1, 3), mesh.grid_quads({m}, {n})", message)
 
 
-def make(choice: Choice, surface=None, callback=lambda *_: None) -> tuple:
+def ground(choice: Choice, surface=None) -> Future:
+    """The `design.Ground` of the surface of a cover, made once for all tabs; as of `make`.
+
+    A thread of its own makes it: nobody who waits has to, and nobody who stops wastes it."""
+    filled = choice.openings == "fill"
+    key = id(surface) if choice.source == "file" else choice.source, filled
+    if key not in _grounds:
+        V, F = (surface if choice.source == "file" else examples.SURFACES[choice.source]())[:2]
+        made = _makers.submit(design.ready, V, F, "fill" if filled else None)
+        _grounds.setdefault(key, (surface, made))  # kept, so that no other has its id
+    return _grounds[key][1]
+
+
+def _known(choice, surface, stage):
+    """The `Ground`, when it is there."""
+    future = ground(choice, surface)
+    while not future.done():
+        if stage("flatten") is False:
+            raise design.Stopped("stopped while the surface was flattened: run again")
+        with suppress(TimeoutError):
+            future.exception(PATIENCE)
+    return future.result()
+
+
+def make(
+    choice: Choice,
+    surface=None,
+    callback: Callable = lambda *_: None,
+    stage: Callable = lambda _: None,
+) -> tuple:
     """V (n, 3), Q (f, 4) of a choice, a sentence on the net, and its `design.Cover`, or None where
     it covers no surface; ValueError where there is none.
 
     surface: `io.Surface` of the file; callback(step, V, Q) sees the start of an optimisation
-    (step None) and every step, and may return False to end it."""
+    (step None) and every step, stage(name) those of `design.cover`; they may return False to end
+    it."""
     recipe, values = _recipe(choice), _values(choice)
     names = {k: np.radians(x) if k in IN_DEGREES else x for k, x in values.items()}
-    names |= {"np": np, "callback": callback, "surface": surface}
+    names |= {"np": np, "callback": callback, "surface": (None, None), "stage": stage}
     # What runs is the recipe's own text with these names: no value becomes a part of it.
     words = {name: name for name in values} | {"callback": ", callback=callback", "net": "net"}
     exec(f"from inetlib import {recipe.rooms}", names)
-    if (choice.kind, choice.source) != ("cover", "file"):
+    if choice.kind != "cover":
         exec(recipe.start.format_map(words), names)
-    elif surface is None:
+    elif choice.source == "file" and surface is None:
         raise ValueError("no file was named on the command line: choose one of the examples")
+    else:
+        names["known"] = _known(choice, surface, stage)
+        words["callback"] += ", stage=stage, known=known"
     if choice.kind == "freeform":
         V, Q = names["V"], names["Q"]
         if callback(None, V, Q) is False:
@@ -147,13 +186,13 @@ def target(choice: Choice, surface=None) -> tuple | None:
     return examples.SURFACES[choice.source]()[:2]
 
 
-def has_one_hole(source: str, surface=None) -> bool:
-    """Whether the surface of this name has one hole, and its net can be a ring; as of `make`."""
-    try:
-        V, F, *_ = surface if source == "file" else examples.SURFACES[source]()
-        return len(repair.clean(V, F).loops) == 2
-    except (TypeError, ValueError):  # no file, or nothing that can be covered
+def has_one_hole(choice: Choice, surface=None) -> bool:
+    """Whether the surface of a cover has one hole, and its net can be a ring: where it is known,
+    as it is when its net was searched for; as of `make`."""
+    if choice.kind != "cover" or (choice.source == "file" and surface is None):
         return False
+    found = ground(choice, surface)
+    return found.done() and not found.exception() and len(found.result().surface.loops) == 2
 
 
 def code(choice: Choice, path: object = "surface.obj") -> str:

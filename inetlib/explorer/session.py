@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from .. import io, measure, mesh, plot
-from ..design import report
+from ..design import STAGES, report
 from . import behind, choices, look, nets, remedy
 
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
@@ -29,8 +29,7 @@ class Session:
         self.choice = self.shown = choices.Choice()
         self.V = self.Q = self.cover = self.report = self.run = None
         self.message, self.problem, self.steps = "", "", 0
-        self._pierced = {}  # surfaces by name: whether they have one hole
-        self._targets = {}  # and what is shown of them
+        self._targets = {}  # surfaces by name: what is shown of them
         self._lock = threading.Lock()  # a search ends in its own thread
         if surface is not None:
             self.change(kind="cover", source="file")
@@ -73,15 +72,14 @@ class Session:
         """Whether there is no net of the choice, or one that is not as it was asked for."""
         stopped = self.run is not None or self.given or "stopped" in self.message
         good = self.report is None or remedy.is_good(self.report, self.shown.kind)
-        return bool(self.problem) or not (stopped or good)
+        if self.problem:
+            return "stopped" not in self.problem
+        return not (stopped or good)
 
     @property
     def has_one_hole(self):
-        """Whether the surface of the choice may be a ring or have an opening."""
-        source = self.choice.source
-        if self.choice.kind == "cover" and source not in self._pierced:
-            self._pierced[source] = nets.has_one_hole(source, self.surface)
-        return self.choice.kind == "cover" and self._pierced[source]
+        """Whether the surface of the choice may be a ring or have an opening, once it is known."""
+        return nets.has_one_hole(self.choice, self.surface)
 
     def construct(self):
         """Make the net of the choice, where no optimisation is needed."""
@@ -98,6 +96,10 @@ class Session:
             theta, theta0 = np.radians([choice.theta, choice.theta0])
             about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
             cover = cover if cover and cover.polygons else None
+            faults = [f"{about.flips} faces flipped"] * (about.flips > 0)
+            faults += [f"{about.darts} not convex"] * (about.darts > 0)
+            if faults and run is None and "flipped" not in message:
+                message += f"; but of {about.quads} faces " + " and ".join(faults)
         except (ValueError, ArithmeticError, MemoryError) as error:
             problem = f"no net: {error or type(error).__name__}"
         with self._lock:
@@ -112,7 +114,7 @@ class Session:
     def begin(self):
         """A new run, for `search`: its choice, and whether it shall stop, as an older one must."""
         self.stop()
-        self.run, self.steps = SimpleNamespace(choice=self.choice, stopped=False), 0
+        self.run, self.steps = SimpleNamespace(choice=self.choice, stopped=False, stage=None), 0
         return self.run
 
     def stop(self):
@@ -120,8 +122,17 @@ class Session:
         if self.run is not None:
             self.run.stopped = True
 
-    def search(self, run, seen=None):
-        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and each step."""
+    def search(self, run, seen=None, told=None):
+        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and each step,
+        told(words) hears of the stages before."""
+
+        def stage(name):
+            if run is not self.run or run.stopped:
+                return False
+            if told is not None and name != run.stage:
+                told(STAGES[name])
+            run.stage = name
+            return True
 
         def after(step, V, Q):
             if run is not self.run or run.stopped:
@@ -132,7 +143,7 @@ class Session:
             return not run.stopped
 
         self._see(run.choice)
-        self._settle(run, None, nets.make, self.surface, after)
+        self._settle(run, None, nets.make, self.surface, after, stage)
 
     def stand_in(self, **values):
         """Where there is no net yet, show that of another choice; the problem stays."""
