@@ -81,6 +81,7 @@ def test_the_stored_figure_is_what_is_drawn(name):
     assert np.degrees(publish.deviations(drawing.nets)).max() < 1e-9
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("name", STORED)
 def test_its_panels_have_letters_in_the_order_in_which_they_are_read(name):
     figure = drawn(name).figure

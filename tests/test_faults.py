@@ -290,7 +290,7 @@ def test_numbers_of_vertices_are_those_of_the_file(inet, tmp_path, suffix, first
 def test_the_bar_names_every_stage_of_a_cover(capfd):
     design.cover(*examples.wavy_roof(10), *ANGLES, count=50, progress=True)
     shown = capfd.readouterr().err
-    for stage in ("check", "flatten", "grid", "angle step", "report"):
+    for stage in ("checking", "flattening", "laying", "angle step", "measuring"):
         assert stage in shown
 
 

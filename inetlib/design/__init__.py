@@ -138,13 +138,7 @@ def cover(
     cannot be covered, and for quads too slender for the surface; safe repairs are named in the
     report.  Look at `report.converged`: a net that is off is returned, not raised."""
     theta, theta0 = float(theta), float(theta0)
-    parallelogram.ratios(theta, theta0)  # refuses angles out of range
-    if size is None:
-        count = parallelogram.check_whole("count", count)
-    else:
-        size = parallelogram.check_positive("size", size)
-    if not np.isfinite(direction):
-        raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
+    count, size = _checked(theta, theta0, count, size, direction)
     through, align = steer.check(along, through, align)
     ground = known or ready(V, F, openings, boundary, progress, stage)
     goal, seconds = ground.goal, {} if known else ground.seconds
@@ -165,29 +159,44 @@ def cover(
             ways["fixed"] = pinned if len(pinned) else None
             net, done, words = _optimise(layer, theta, theta0, callback, ways)
     with begin("report"):
-        Q, polygons = layer.Q, []
-        if trim:
-            net, plain = (np.concatenate([x, edge.extra]) for x in (net, layer.V))
-            net, Q, edge = uncrossed(net, plain, Q, edge)
-            polygons = edge.polygons
-        found = survey(net, Q, theta, theta0, goal, flat, polygons)
-    words += _away(found, ground.surface) if done else ""
-    found = found._replace(converged=done, message=words, winding=layer.winding)
-    found = found._replace(repairs=tuple(ground.surface.repairs), seconds=seconds)
+        net = _measured(net, layer, edge, theta, theta0, ground, flat)
+    words += _away(net.report, ground.surface) if done else ""
+    notes = net.report.notes
     if not (through is None or trim or len(pinned)):
-        missed = "no whole quad reaches the point to go through: trim the net, or ask for more"
-        found = found._replace(notes=(*found.notes, missed))
-    if not trim:
-        return Cover(net, Q, found, [])
-    return Cover(net, Q, found._replace(cut_smallest=edge.smallest), polygons, edge.edges)
+        notes += ("no whole quad reaches the point to go through: trim the net, or ask for more",)
+    found = {"converged": done, "message": words, "notes": notes, "seconds": seconds}
+    return net._replace(report=net.report._replace(**found))
+
+
+def _checked(theta, theta0, count, size, direction):
+    """(count, size) of a grid; ValueError for what is none."""
+    parallelogram.ratios(theta, theta0)  # refuses angles out of range
+    if not np.isfinite(direction):
+        raise ValueError(f"direction = {direction}: a finite angle in radians is wanted")
+    if size is None:
+        return parallelogram.check_whole("count", count), None
+    return count, parallelogram.check_positive("size", size)
+
+
+def _measured(V, layer, edge, theta, theta0, ground, flat):
+    """The `Cover` of the vertices V of a `Layer`; edge: the `Trimmed` one, if not None."""
+    Q, polygons, edges, smallest = layer.Q, [], None, None
+    if edge is not None:
+        V, plain = (np.concatenate([x, edge.extra]) for x in (V, layer.V))
+        V, Q, edge = uncrossed(V, plain, Q, edge)
+        polygons, edges, smallest = edge.polygons, edge.edges, edge.smallest
+    found = survey(V, Q, theta, theta0, ground.goal, flat, polygons)
+    known = {"cut_smallest": smallest, "winding": layer.winding}
+    found = found._replace(repairs=tuple(ground.surface.repairs), **known)
+    return Cover(V, Q, found, polygons, edges)
 
 
 def _refuse_slender(layer):
     """ValueError where the grid as lifted is no start: no optimisation makes a net of it."""
-    shape = measure.quality(layer.V, layer.Q)
-    if max(shape.flips, shape.darts) > SLENDER * len(layer.Q):
+    flips, darts = (len(f(layer.V, layer.Q)) for f in (measure.flipped, measure.nonconvex))
+    if max(flips, darts) > SLENDER * len(layer.Q):
         raise ValueError(
-            f"the quads are too slender for this surface: {shape.darts} of {len(layer.Q)} are not "
+            f"the quads are too slender for this surface: {darts} of {len(layer.Q)} are not "
             "convex on it; angles nearer to 90 degrees, or more quads, are wanted"
         )
 
