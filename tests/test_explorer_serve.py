@@ -1008,6 +1008,11 @@ def test_a_net_of_a_file_is_named_and_read_again_by_its_code(tmp_path, monkeypat
     assert session.message.startswith("my net.obj; ")
     exec(session.code(), names)
     assert np.array_equal(names["V"], PATCH[0]) and np.array_equal(names["Q"], PATCH[1])
+    assert session.unit == "Lengths are in the unit of my net.obj." and session.cover is None
+    V, Q, polygon = mesh.polygon_rings(5, 2)
+    session = Session(net=(V, Q, [polygon]))
+    assert session.report.polygons == (5,) and session.save(".obj").count(b"\nf ") == len(Q) + 1
+    assert session.unit == "Lengths have no unit."
 
 
 @pytest.mark.parametrize(

@@ -131,7 +131,7 @@ def _show(given):
     V, F, polygons, notes = _read(given)
     if given.output is None:
         if F.shape[1] == 4:
-            return _serve(given, None, given.surface, net=(V, F))
+            return _serve(given, None, given.surface, net=(V, F, polygons))
         try:
             return _explore(given)
         except ValueError as error:
@@ -167,7 +167,7 @@ def _picture(given, V, F, polygons):
     """The bytes of a picture of a net (quads), or of a surface with its boundary (triangles)."""
     import numpy as np
 
-    from .. import design, mesh, plot
+    from .. import mesh, plot
     from ..explorer import choices, look
 
     flat = np.ptp(V, axis=0)[2] < 1e-6 * np.ptp(V, axis=0).max()
@@ -178,8 +178,7 @@ def _picture(given, V, F, polygons):
         rims, times = np.unique(sides, axis=0, return_counts=True)
         lines = [(V[rim], look.LIGHT.families["rim"], 1.2) for rim in rims[times != 2]]
         return look.drawn([(V, F, look.LIGHT.face)], lines, camera, form)
-    none = np.empty((0, 2), dtype=np.int64)
-    cover = design.Cover(V, F, None, polygons, {"u": none, "v": none}) if polygons else None
+    cover = look.with_panels(V, F, polygons)
     choice = choices.Choice(families=given.families, parallelograms=given.parallelograms)
     return look.picture(V, F, choice, None, camera, form, cover)
 

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from .. import measure, plot, repair
+from .. import design, measure, plot, repair
+from ..design import report
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading by deviation tells apart
 STEPS = 5  # of the other scales
@@ -154,6 +155,18 @@ def layout(Q, count, families, parallelograms=False, cover=None) -> Layout:
         pairs, times = np.unique(pairs, axis=0, return_counts=True)
         rim = {"rim": pairs[times == 2]}  # sides of panels on no curve
     return Layout(means, quads, triangles, cut, {name: lines[name] for name in families} | rim)
+
+
+def with_panels(V: np.ndarray, Q: np.ndarray, polygons: list) -> design.Cover | None:
+    """The `design.Cover` of a net with further faces, where there are any: no curves cross them.
+
+    Its report has deviations from the mean angles."""
+    if not polygons:
+        return None
+    means = dict(zip(("theta", "theta0"), (x.mean() for x in measure.angles(V, Q)), strict=True))
+    none = np.empty((0, 2), dtype=np.int64)
+    about = report.report(V, Q, polygons, **means)
+    return design.Cover(V, Q, about, polygons, {"u": none, "v": none})
 
 
 def points(V: np.ndarray, layout: Layout) -> np.ndarray:

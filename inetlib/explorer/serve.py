@@ -193,8 +193,8 @@ def serve(
 ) -> None:
     """Serve until Ctrl-C or SIGTERM; ready(address) is called once.
 
-    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`; net: V, Q
-    of a net that is given, to be shown instead."""
+    surface, path: `io.Surface` of a file and its name, or None; port as of `Door.open`; net: as
+    of `Session`, to be shown instead."""
 
     async def run():
         door, end = Door(surface, path), asyncio.Event()

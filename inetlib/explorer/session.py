@@ -20,9 +20,9 @@ class Session:
     """A `choices.Choice` and the net that belongs to it.
 
     surface, path: `io.Surface` of the file on the command line and its name; net: V, Q of a net
-    that is given and not made here.  V, Q, report, message: the net that is shown, of the choice
-    `shown`; cover: its `design.Cover` where it has cut panels, or None; problem: why there is no
-    net of the choice, or ""; run: the search under way."""
+    that is given and not made here, and its further faces, if any.  V, Q, report, message: the
+    net that is shown, of the choice `shown`; cover: its `design.Cover` where it has cut panels,
+    or None; problem: why there is no net of the choice, or ""; run: the search under way."""
 
     def __init__(self, surface=None, path=None, net=None):
         self.surface, self.path, self.given = surface, path, net is not None
@@ -34,11 +34,13 @@ class Session:
         if surface is not None:
             self.change(kind="cover", source="file")
         if self.given:
-            V, Q = mesh.check_arrays(*net)
+            V, Q = mesh.check_arrays(*net[:2])
+            cover = look.with_panels(V, Q, *net[2:]) if net[2:] else None
             theta, theta0 = np.degrees([x.mean() for x in measure.angles(V, Q)])
             self.change(theta=theta, theta0=theta0, parallelograms=False)
-            words = f"{path or 'a net from Python'}; deviations are from its mean angles"
-            self._settle(None, None, lambda _: (V, Q, words, None))
+            name = Path(path).name if path else "a net from Python"
+            words = f"{name}; deviations are from its mean angles"
+            self._settle(None, None, lambda _: (V, Q, words, cover))
             if self.problem:
                 raise ValueError(self.problem)
 
@@ -58,7 +60,8 @@ class Session:
     @property
     def unit(self):
         """What lengths are measured in, a sentence."""
-        if (self.choice.kind, self.choice.source) == ("cover", "file") and self.path:
+        of_file = self.given or (self.choice.kind, self.choice.source) == ("cover", "file")
+        if of_file and self.path:
             return f"Lengths are in the unit of {Path(self.path).name}."
         return "Lengths have no unit."
 
@@ -204,6 +207,7 @@ class Session:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
             polygons, edges = (self.cover.polygons, self.cover.edges) if self.cover else ((), None)
-            curves = mesh.polylines(self.Q, edges) if suffix in io.WITH_CURVES else None
+            has_curves = suffix in io.WITH_CURVES and mesh.is_labelled(self.Q)
+            curves = mesh.polylines(self.Q, edges) if has_curves else None
             io.write(path, self.V, self.Q, curves, polygons)
             return path.read_bytes()
