@@ -1042,3 +1042,12 @@ def test_short_numbers_are_short_and_near_and_written_as_on_paper(x, digits):
     assert len(text) <= digits + 8
     value = float(text.replace("\u2212", "-"))
     assert value == pytest.approx(x, rel=0.51 * 10.0 ** (1 - digits), abs=1e-300)
+
+
+@pytest.mark.parametrize("values", [{"theta0": 1}, {"map": "moebius", "theta0": 1}, {"theta0": 60}])
+def test_a_constructed_net_with_faulty_faces_says_so(values):
+    made = built(**{"kind": "plane", "map": "square", "m": 12, "n": 12} | values)
+    quality = measure.quality(made.V, made.Q)
+    faults = quality.flips + quality.darts
+    assert (values["theta0"] == 1) is (faults > 0)
+    assert (f"but {faults} of 144 faces" in made.message) is (faults > 0)

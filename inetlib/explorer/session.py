@@ -99,10 +99,9 @@ class Session:
             theta, theta0 = np.radians([choice.theta, choice.theta0])
             about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
             cover = cover if cover and cover.polygons else None
-            faults = [f"{about.flips} faces flipped"] * (about.flips > 0)
-            faults += [f"{about.darts} not convex"] * (about.darts > 0)
+            faults = about.flips + about.darts
             if faults and run is None and "flipped" not in message:
-                message += f"; but of {about.quads} faces " + " and ".join(faults)
+                message += f"; but {faults} of {about.quads} faces are flipped or not convex"
         except (ValueError, ArithmeticError, MemoryError) as error:
             problem = f"no net: {error or type(error).__name__}"
         with self._lock:
