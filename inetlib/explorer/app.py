@@ -36,7 +36,7 @@ class App:
         self.state = self.server.state
         self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
-        self._task, self._search, self._remake = None, None, False
+        self._task, self._search, self._remake, self._whole = None, None, False, True
         self._worker = ThreadPoolExecutor(
             1, "search"
         )  # a new one waits until the old one has ended
@@ -230,7 +230,7 @@ class App:
         shade, state.legend = session.shading()
         self.scene.show(session.V, session.Q, session.choice, state.dark, shade, session.cover)
         self.play.compare()
-        self.view.update()
+        self.send()
         if self.fitted is None:
             self.look("fit")
         elif scene.is_lost(session.V, self.fitted):
@@ -239,6 +239,16 @@ class App:
         asked = session.shown.theta, session.shown.theta0
         state.histogram_svg = plates.histograms(session.deviations(), asked)
         self.play.shown()
+
+    def send(self):
+        """Send the browser what has changed in the scene: the first time all of it."""
+        helper = vtk_module.get_helper(self.server)
+        if self._whole or not self.server.protocol:
+            self._whole = not self.server.protocol
+            self.view.update()
+        else:  # trame would make and send the whole scene each time, too
+            delta = helper.scene(self.scene.plotter.render_window)
+            self.server.protocol.publish("trame.vtk.delta", delta)
 
     def _plates(self):
         choice, state = self.session.choice, self.state

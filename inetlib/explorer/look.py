@@ -171,7 +171,7 @@ def with_panels(V: np.ndarray, Q: np.ndarray, polygons: list) -> design.Cover | 
 
 def points(V: np.ndarray, layout: Layout) -> np.ndarray:
     """The vertices of a layout: V and the means."""
-    return np.concatenate([V, *(V[k].mean(axis=1) for k in layout.means)])
+    return np.concatenate([V, *(sum(V[c] for c in k.T) / k.shape[1] for k in layout.means)])
 
 
 def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> np.ndarray:

@@ -137,7 +137,7 @@ class Play:
         app, surface = self.app, self.app.session.target
         if surface is not None:
             self.compare()
-            app.view.update()
+            app.send()
             sight = scene.sight("cover", None)
             app.view.push_camera(app.scene.camera(surface.points, *sight, app.aspect))
 
