@@ -218,7 +218,7 @@ def test_where_there_is_no_good_net_each_change_that_is_offered_makes_one(values
     (found.search(found.begin()) if found.must_search else found.construct())
     assert found.is_faulty
     offers = remedy.remedies(found.choice)
-    assert 1 <= len(offers) <= remedy.MOST
+    assert 1 <= len(offers) <= remedy.MOST and all(offers.count(one) == 1 for one in offers)
     for change in offers:
         other = Session()
         other.choice = found.choice
@@ -235,6 +235,8 @@ def test_the_angles_that_are_offered_are_near_and_nothing_is_tried_when_it_must_
     choice = replace(Choice(), theta=1.0, theta0=179.0, m=8, n=8)
     both = remedy.remedies(choice)[0]
     assert 1 < both["theta"] < 20 and 160 < both["theta0"] < 179
+    (one,) = [x for x in remedy.remedies(replace(choice, theta=90.0)) if "theta0" in x]
+    assert "theta" not in one  # it is right as it is
     locked = replace(choice, theta=3.0, theta0=3.0, lock=True)
     assert all(x["theta"] == x["theta0"] for x in remedy.remedies(locked) if "theta" in x)
     start = time.monotonic()

@@ -14,7 +14,7 @@ from .choices import Choice
 SECONDS = 2.0  # for all trials
 HALVINGS = 5  # of the way to right angles
 MOST = 4  # changes that are offered
-LARGE = 20_000  # triangles of a file: a trial would take too long
+LARGE = 20_000  # triangles: to fill or open the hole of such a surface takes too long
 CLOSE = np.radians(1e-6)  # of an angle: what an optimisation must reach
 TIMES = {
     "m": (1.5, 2, 3, 5, 7, 0.5),
@@ -40,26 +40,26 @@ def is_good(about: Report, kind: str) -> bool:
 def remedies(choice: Choice, surface: Any = None, going: Callable = lambda: True) -> list[dict]:
     """Changes {name: value} of a choice, at most 4, each of which makes a good net.
 
-    surface: as of `nets.make`; going(): whether to go on, for `SECONDS` at most."""
-    if (choice.kind, choice.source) == ("cover", "file") and surface:
-        if len(surface[1]) > LARGE:
-            return []
-    else:
+    surface: as of `nets.make`; going(): whether to go on, for `SECONDS` at most, and as long once
+    more where nothing was found."""
+    if (choice.kind, choice.source) != ("cover", "file"):
         surface = None
     end = time.monotonic() + SECONDS
     ways, found = list(_ways(choice, surface)), list[dict]()
     for k, way in enumerate(ways):
         now = time.monotonic()
-        until = now + (end - now) / (len(ways) - k)
+        until = now + (end - now) / min(2, len(ways) - k)
 
         def works(values, until=until):
             return _works(choice, values, surface, lambda: going() and time.monotonic() < until)
 
         if len(found) < MOST and (values := way(works)):
-            found.append({k: x for k, x in values.items() if x != getattr(choice, k)})
+            change = {k: x for k, x in values.items() if x != getattr(choice, k)}
+            found += [change] if change not in found else []
     plain = {"theta": 90.0, "theta0": 90.0}  # where one change is not enough
     plain |= {name: getattr(Choice(), name) for name in TIMES if name in choices.USES[choice.kind]}
-    if not found and _works(choice, plain, surface, going):
+    end += SECONDS
+    if not found and _works(choice, plain, surface, lambda: going() and time.monotonic() < end):
         return [{k: x for k, x in plain.items() if x != getattr(choice, k)}]
     return found
 
@@ -69,7 +69,7 @@ def _works(choice, values, surface, going):
     if problems or new == choice or not going():
         return False
     try:
-        V, Q, _, cover = nets.make(new, surface, lambda *_: going())
+        V, Q, _, cover = nets.make(new, surface, lambda *_: going(), lambda _: going())
         theta, theta0 = np.radians([new.theta, new.theta0])
         about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
         return is_good(about, new.kind)
@@ -100,7 +100,7 @@ def _ways(choice, surface) -> Iterator[Callable]:
         rungs.append(
             [{"px": round(r * away[0], 2), "py": round(r * away[1], 2)} for r in (1.2, 1.5, 2, 3)]
         )
-    if choice.kind == "cover":
+    if choice.kind == "cover" and (surface is None or len(surface[1]) < LARGE):
         rungs.append([{"openings": "ring" if choice.openings == "fill" else "fill"}])
     for some in rungs:
         yield lambda works, some=some: next(filter(works, some), None)
