@@ -187,3 +187,21 @@ def test_whoever_has_only_keys_sees_where_they_are(reader):
     words = " ".join(filter(None, reached))
     for name in ("in-save", "in-presets", "in-kind", "in-theta", "in-lock", "in-m", "in-radius6"):
         assert name in words, name
+
+
+def test_a_copied_link_opens_the_same_view_in_the_same_light(reader):
+    page, seen = reader.page, []
+    opened(reader, "kind=revolution&m=8&n=6")
+    page.get_by_title("Light or dark").click()
+    reader.settled()
+    page.evaluate("inet.turn(35, 20)")
+    page.evaluate("inet.zoom(0.6)")
+    for _ in range(2):
+        seen.append((page.evaluate("inet.angles()"), page.evaluate("trame.state.get('dark')")))
+        page.get_by_title("Copy link").click()
+        page.wait_for_function("() => location.search.includes('&camera=')")
+        page.goto(page.url)
+        page.wait_for_selector(".out-flips:not(:empty)")
+        reader.settled()
+    assert seen[0] == seen[1] and seen[0][1] is True
+    assert is_drawn(reader.picture())

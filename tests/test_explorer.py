@@ -274,6 +274,15 @@ def test_a_link_changes_the_choice_that_is_there_and_may_be_too_long():
     assert choice == Choice() and 0 < len(problems) < 1000  # the rest is not looked at
 
 
+def test_a_link_may_say_how_the_page_looked_and_nonsense_is_no_camera():
+    query = "kind=revolution&m=9&dark=1&camera=-20,45.5,0,0.89,-0.1,0.1,0.9"
+    assert parse(query) == parse("kind=revolution&m=9")
+    assert choices.seen(query) == (True, [-20, 45.5, 0, 0.89, -0.1, 0.1, 0.9])
+    assert choices.seen("dark=0") == (False, []) and choices.seen("m=9") == (None, [])
+    for wrong in ("", "1,2,3", "1,2,3,0,5,6,7", "1,2,3,-4,5,6,7", "nan,2,3,4,5,6,7", "x" * 9):
+        assert choices.seen(f"dark=2&camera={wrong}") == (None, [])
+
+
 OPENED = """
 kind=plane&theta=33.3&theta0=141.7&lock=0&map=moebius&m=9&n=7&px=0.25&py=2 63 4.32344495
 kind=plane&map=exp&m=9&n=7&families=d1,d2&parallelograms=0&shade=1 63 14.4569748

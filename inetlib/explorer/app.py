@@ -36,6 +36,7 @@ class App:
         self.state = self.server.state
         self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
+        self.placed = []  # the camera of the link, until another one is asked for
         self._task, self._search, self._remake, self._whole = None, None, False, True
         self._worker = ThreadPoolExecutor(
             1, "search"
@@ -89,7 +90,8 @@ class App:
 
     def arrive(self, query, dark, aspect):
         """A browser has opened the page: take the link's values, and show the net."""
-        self.state.dark, self.aspect = bool(dark), float(aspect)
+        asked, self.placed = choices.seen(str(query))
+        self.state.dark, self.aspect = bool(dark if asked is None else asked), float(aspect)
         self._dress()
         self.session.choice, problems = choices.parse(str(query), self.session.choice)
         self._echo(problems)
@@ -109,7 +111,7 @@ class App:
         """Show the net of the choice, in which the values of these names are new."""
         self._echo()
         if NEW_PLACE & names:
-            self.sight = self.fitted = None
+            self.sight, self.fitted, self.placed = None, None, []
         self._soon(not names <= set(choices.SHOWN))
 
     def preset(self, name):
@@ -145,13 +147,16 @@ class App:
     def look(self, name, aspect=None):
         """See the whole net: "from_above", "from_side", "fit": by default, "refit": as before."""
         self.aspect = float(aspect or self.aspect)
+        if aspect and name != "refit":  # somebody pressed the button
+            self.placed = []
         V, sight = self.session.V, SIGHTS.get(name, self.sight)
         if name == "fit":
             sight = scene.sight("cover" if self.session.given else self.session.choice.kind, V)
         if V is not None and sight is not None:
             grows = self.session.run is not None and self.session.choice.trim  # in the end
             self.sight, self.fitted = sight, None if grows else V
-            self.view.push_camera(self.scene.camera(self.play.extent(), *sight, self.aspect))
+            fitting = partial(self.scene.camera, self.play.extent(), *sight, self.aspect)
+            self.view.push_camera(self.scene.place(*self.placed) if self.placed else fitting())
 
     def _soon(self, remake):
         """Show the net when the changes that are waiting have come; remake: make it first."""
@@ -234,6 +239,7 @@ class App:
         if self.fitted is None:
             self.look("fit")
         elif scene.is_lost(session.V, self.fitted):
+            self.placed = []
             self.look("refit")
         state.numbers = plates.numbers(session.report, session.V, session.Q)
         asked = session.shown.theta, session.shown.theta0

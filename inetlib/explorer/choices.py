@@ -152,6 +152,7 @@ USES = {  # of each kind, besides the angles and what is shown
     "cover": ("source", "quads", "direction", "openings", "trim"),
 }
 SHOWN = "families", "parallelograms", "shade", "target"
+VIEW = "dark", "camera"  # of a link that was copied: how the page looked
 OPENING = {  # what kinds and surfaces open with, where it is not what `Choice` has
     "isothermal": {"m": 28, "n": 40},
     "revolution": {"m": 36},
@@ -265,5 +266,18 @@ def _text(value):
 
 def parse(query: str, choice: Choice | None = None) -> tuple[Choice, list[str]]:
     """(a choice, sentences on what is wrong) of URL parameters, with or without the `?`."""
-    pairs = parse_qsl(query.removeprefix("?")[:4000], keep_blank_values=True)
-    return changed(choice or Choice(), **dict(pairs))
+    pairs = _pairs(query)
+    return changed(choice or Choice(), **{k: x for k, x in pairs.items() if k not in VIEW})
+
+
+def seen(query: str) -> tuple[bool | None, list[float]]:
+    """(whether the page is dark, its camera: seven numbers) of URL parameters; None and nothing
+    where they do not say so.  The numbers are those of `Scene.place`."""
+    pairs = _pairs(query)
+    numbers = [Range(-1e6, 1e6).read(part) for part in pairs.get("camera", "").split(",")]
+    whole = len(numbers) == 7 and None not in numbers and numbers[3] > 0
+    return SWITCH.get(pairs.get("dark")), numbers if whole else []
+
+
+def _pairs(query):
+    return dict(parse_qsl(query.removeprefix("?")[:4000], keep_blank_values=True))

@@ -12,6 +12,7 @@ window.inet = {
   link(query) {
     // Browsers count such changes: one when the values have come to rest.
     clearTimeout(this.waiting);
+    if (decodeURIComponent(window.location.search).startsWith(`?${query}`)) return;
     const change = () => window.history.replaceState(null, "", `${window.location.pathname}?${query}`);
     this.waiting = setTimeout(change, 250);
   },
@@ -22,7 +23,26 @@ window.inet = {
     else failed();
   },
   copyLink(query) {
-    this.copy(`${window.location.origin}${window.location.pathname}?${query}`, "link");
+    // With the view and the theme, so that the other page looks the same.
+    clearTimeout(this.waiting);
+    const dark = Number(window.trame.state.get("dark"));
+    window.history.replaceState(null, "", `${window.location.pathname}?${query}&dark=${dark}&camera=${this.angles()}`);
+    this.copy(window.location.href, "link");
+  },
+  angles() {
+    // Of the camera, as `Scene.place` wants them: azimuth, elevation, roll; half the height; middle.
+    const { position, focalPoint, viewUp, parallelScale } = this.view().getCamera();
+    const d = position.map((x, k) => x - focalPoint[k]);
+    const flat = Math.hypot(d[0], d[1]);
+    const e = Math.atan2(d[2], flat);
+    const a = flat < 1e-6 * Math.abs(d[2]) ? -Math.PI / 2 : Math.atan2(d[1], d[0]);
+    const along = (v) => v.reduce((sum, x, k) => sum + x * viewUp[k], 0);
+    const up = along([-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)]);
+    const roll = Math.atan2(along([-Math.sin(a), Math.cos(a), 0]), up);
+    const degrees = [a, e, roll].map((x) => ((x * 180) / Math.PI).toFixed(1));
+    const unit = 10 ** (Math.floor(Math.log10(parallelScale)) - 3);
+    const lengths = [parallelScale, ...focalPoint].map((x) => Number((Math.round(x / unit) * unit).toPrecision(6)));
+    return [...degrees, ...lengths].join(",");
   },
   async save(suffix, mime) {
     const data = await window.trame.trigger("save", [suffix, this.camera()]);
@@ -40,10 +60,12 @@ window.inet = {
     const e = Math.max(-limit, Math.min(limit, Math.asin(Math.max(-1, Math.min(1, d[2] / r))) + (up * Math.PI) / 180));
     const towards = [Math.cos(e) * Math.cos(azimuth), Math.cos(e) * Math.sin(azimuth), Math.sin(e)];
     const viewUp = [-Math.sin(e) * Math.cos(azimuth), -Math.sin(e) * Math.sin(azimuth), Math.cos(e)];
+    this.loads = 9;
     this.view().setCamera({ ...c, position: towards.map((x, k) => c.focalPoint[k] + r * x), viewUp });
   },
   zoom(factor) {
     const c = this.view().getCamera();
+    this.loads = 9;
     this.view().setCamera({ ...c, parallelScale: c.parallelScale * factor });
   },
   keys(event) {
@@ -75,7 +97,7 @@ window.inet = {
   },
   loads: 0,
   loaded() {
-    // A camera that came before the first scene was there is lost.
+    // A camera that came before the first scene was there is lost; from 9 on it is the reader's.
     this.loads += 1;
     if (this.loads === 1) this.welcome();
     if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
@@ -117,7 +139,10 @@ window.inet = {
 };
 Object.defineProperty(window, "devicePixelRatio", { get: () => window.inet.ratio * window.inet.fine });
 for (const name of ["keydown", "pointerdown", "wheel"]) {
-  document.addEventListener(name, () => window.inet.sharp || window.inet.rest(), { capture: true, passive: true });
+  document.addEventListener(name, (event) => {
+    if (!window.inet.sharp) window.inet.rest();
+    if (event.target.closest?.(".ex-view") && name !== "keydown") window.inet.loads = 9;
+  }, { capture: true, passive: true });
 }
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && window.trame.state.get("tour")) window.inet.tour(0);

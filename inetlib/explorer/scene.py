@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .. import view
+from .. import plot, view
 from . import look
 from .behind import Behind
 
@@ -79,6 +79,17 @@ class Scene:
             self.plotter.camera, V - self.origin, tuple(np.radians([azimuth, elevation])), aspect
         )
         return self.plotter.camera
+
+    def place(self, azimuth, elevation, roll, scale, *middle):
+        """A camera (for vtk.js) from a link, angles in degrees: the viewer's direction, how far
+        the view is turned about it; half the height seen; the point in the middle."""
+        flat, near = plot.camera(*np.radians([azimuth, elevation]))(np.eye(3))
+        right, up = flat.T
+        turned, camera = np.radians(roll), self.plotter.camera
+        camera.parallel_projection, camera.parallel_scale = True, scale
+        camera.focal_point, camera.position = middle, np.array(middle) + 4 * scale * near
+        camera.up = np.cos(turned) * up + np.sin(turned) * right
+        return camera
 
 
 def sight(kind: str, V: np.ndarray | None) -> tuple:
