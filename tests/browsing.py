@@ -46,6 +46,14 @@ STILL = """async () => {  // the server answers in order
 }"""
 
 
+REST = """async () => {  // what is seen when nothing moves, drawn now and not when there is time
+  inet.sharpen();
+  await new Promise((done) => setTimeout(done, 20));
+  inet.view().$.provides.view.renderWindow.render();
+  for (let k = 0; k < 2; k += 1) await new Promise(requestAnimationFrame);
+}"""
+
+
 class Reader:
     """A tab of the explorer, and what a person would do and read there."""
 
@@ -111,10 +119,7 @@ class Reader:
 
     def picture(self):
         """What the view shows when it is at rest: RGB (h, w, 3)."""
-        self.page.evaluate("inet.sharpen()")
-        self.page.evaluate(
-            "() => new Promise((r) => requestAnimationFrame(() => setTimeout(r, 60)))"
-        )
+        self.page.evaluate(REST)
         return image(self.page.locator(".ex-view").screenshot())
 
 

@@ -151,7 +151,7 @@ def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
     reader.page.goto(f"{reader.address}?kind=cover&quads=60&trim=1")
     reader.page.wait_for_selector(".out-cut:not(:empty)")
     reader.settled()
-    seen = reader.picture()[40:]  # below the shadow of the bar
+    seen = reader.picture()[40:-3]  # below the shadow of the bar, above the line
     assert is_drawn(seen) and np.abs(seen[:, [2, -3]] - seen[-5, 5]).max() < 30  # all is in view
 
 
@@ -208,14 +208,13 @@ def test_an_optimisation_runs_can_be_stopped_and_run_again(tab):
     judge(reader)
     reader.type("m", "100")
     reader.type("n", "60")
-    good = reader.picture()
+    seen = reader.page.evaluate("inet.loads")
     reader.page.locator(".in-run").click()
     reader.page.locator(".out-progress", has_text="step").wait_for()
-    moving = reader.picture()
     reader.page.locator(".in-stop").click()
     reader.page.locator(".out-message").wait_for()
     assert "stopped by the caller" in reader.text(".out-message")
-    assert np.abs(moving - good).mean() > 0.5  # it was seen on its way
+    assert reader.page.evaluate("inet.loads") > seen + 1  # it was seen on its way
     reader.page.locator(".in-run").click()
     reader.page.locator(".out-progress").wait_for()
     reader.settled()
