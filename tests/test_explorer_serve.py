@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import threading
+import time
 import types
 import warnings
 from contextlib import asynccontextmanager
@@ -795,6 +796,30 @@ async def test_a_page_that_says_hello_is_answered_and_nobody_else(house):
         assert wrong == {"code": -32001, "message": "Exception raised"}
 
 
+async def test_of_many_moves_of_a_slider_only_the_latest_are_computed(house):
+    door, client = house
+    async with client.ws_connect("ws") as socket:
+        await socket.send_bytes(packed("system:c0:0", "wslink.hello", {"secret": "wslink-secret"}))
+        await answer(socket)
+        await until(lambda: len(door.tabs) == 1)
+        ((app, _),) = door.tabs
+        await arrived(app, "?m=4&n=4")
+        construct, made = app.session.construct, []
+
+        def slow():
+            time.sleep(0.02)  # as long as nothing else is heard
+            construct()
+            made.append(app.session.choice.theta)
+
+        app.session.construct = slow
+        moves = [float(theta) for theta in range(61, 101)]
+        for k, theta in enumerate(moves):
+            change = [{"key": "theta", "value": theta}]
+            await socket.send_bytes(packed(f"rpc:c0:{k}", "trame.state.update", change))
+        await until(lambda: made and made[-1] == moves[-1])
+        assert made == sorted(made) and len(made) < len(moves) / 4
+
+
 TABS = """
 import sys
 import inetlib.explorer.session
@@ -916,6 +941,7 @@ def test_serving_ends_with_a_signal_and_the_port_is_free_again(serve, name, net,
 def kernel(monkeypatch):
     """As in a notebook's kernel where no server has been started yet."""
     monkeypatch.setattr(notebook, "_door", None)
+    monkeypatch.setattr(notebook, "_shown", {})
     monkeypatch.setattr(view, "available", lambda: (False, "no OpenGL"))
     monkeypatch.setitem(sys.modules, "ipykernel", types.ModuleType("ipykernel"))
     for name in ("JUPYTERHUB_SERVICE_PREFIX", "INETLIB_PROXY"):
@@ -1013,6 +1039,24 @@ def test_a_net_of_a_file_is_named_and_read_again_by_its_code(tmp_path, monkeypat
     session = Session(net=(V, Q, [polygon]))
     assert session.report.polygons == (5,) and session.save(".obj").count(b"\nf ") == len(Q) + 1
     assert session.unit == "Lengths have no unit."
+
+
+def test_nets_are_released_with_their_cell_and_the_oldest_ones(door, monkeypatch):
+    def run(cell, number, *gone):
+        monkeypatch.setattr(notebook, "_cell", lambda: (cell, gone, number))
+        notebook.turn(*PATCH, live=True)
+        return list(door.nets)
+
+    assert len(run("a", 1)) == 1 and len(run("a", 1)) == 2  # two nets of one cell
+    two = run("b", 2)
+    assert len(two) == 3
+    again = run("a", 3)
+    assert len(again) == 2 and again[0] == two[2]
+    assert run("c", 4, "b")[0] == again[1] and len(door.nets) == 2
+    monkeypatch.setattr(notebook, "KEPT", 5)
+    for _ in range(9):  # nobody says which cell it is
+        last = run(None, None)
+    assert len(last) == 5 and set(notebook._shown) == set(last)
 
 
 @pytest.mark.parametrize(

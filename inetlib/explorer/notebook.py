@@ -22,8 +22,10 @@ GONE = (
     "in a browser of this machine while the kernel runs (README.md: JupyterLab elsewhere)."
 )
 TOP, ROUND = (-np.pi / 2, np.pi / 2), (-0.9, 0.45)  # azimuth and elevation of pictures
+KEPT = 100  # nets that are given: for more the oldest are forgotten
 _lock = threading.Lock()
 _door = None
+_shown: dict = {}  # {key of a net: what `_cell` said when it was given}
 
 
 class Live(NamedTuple):
@@ -94,10 +96,30 @@ def turn(
     if not live:
         return _still(picture, width=640)
     door, key = _open_door(), secrets.token_hex(8)
-    door.nets[key] = session.V, session.Q
+    _forget(door, *_cell())
+    door.nets[key], _shown[key] = (session.V, session.Q), _cell()
     query = "families=" + ",".join(session.choice.families)
     address = f"{_address(door)}net/{key}/index.html?{query}"
     return Live(address, picture, height=480)
+
+
+def _cell():
+    """The cell that runs, those that were deleted, and this run: None and () where nobody says."""
+    from IPython import get_ipython
+
+    parent = getattr(get_ipython(), "get_parent", dict)()
+    about = parent.get("metadata", {})
+    gone = tuple(about.get("deletedCells", ()))
+    return about.get("cellId"), gone, parent.get("header", {}).get("msg_id")
+
+
+def _forget(door, cell, gone, run):
+    """Release the nets of former runs of a cell, those of cells that are gone, and the oldest."""
+    for key, (other, _, former) in list(_shown.items()):
+        again = other is not None and (other in gone or (other == cell and former != run))
+        if again or len(door.nets) >= KEPT:
+            del _shown[key]
+            door.nets.pop(key, None)
 
 
 def in_the_round(V: np.ndarray, Q: np.ndarray, view: tuple = (-0.9, 0.35)) -> Any:
