@@ -16,6 +16,9 @@ from . import behind, choices, look, nets, remedy
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
 
 
+NET = "V", "Q", "cover", "message", "shown", "report"  # what belongs to the net that is shown
+
+
 class Session:
     """A `choices.Choice` and the net that belongs to it.
 
@@ -149,10 +152,12 @@ class Session:
 
     def stand_in(self, **values):
         """Where there is no net yet, show that of another choice; the problem stays."""
-        choice, problem = self.choice, self.problem
-        self.change(**values)
-        self._settle(None, None, nets.make, self.surface)
-        self.choice, self.problem = choice, problem
+        other = Session(self.surface, self.path)
+        other.choice, _ = choices.changed(self.choice, **values)
+        other._settle(None, None, nets.make, self.surface)
+        with self._lock:
+            if self.V is None:
+                vars(self).update({name: vars(other)[name] for name in NET})
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
