@@ -42,7 +42,8 @@ def numbers(low, high, step, unit, open, whole):
     """A strategy: all allowed values of a number."""
     if whole:
         return st.integers(low, high)
-    return st.floats(low, high, exclude_min=open, exclude_max=open)
+    edge = choices.EDGE if open else 0
+    return st.floats(low + edge, high - edge)
 
 
 ALLOWED = {
@@ -1060,3 +1061,10 @@ def test_a_constructed_net_with_faulty_faces_says_so(values):
     faults = quality.flips + quality.darts
     assert (values["theta0"] == 1) is (faults > 0)
     assert (f"but {faults} of 144 faces" in made.message) is (faults > 0)
+
+
+def test_angles_that_are_nearly_none_are_refused_like_none():
+    said = changed(Choice(), theta=0)[1][0].replace("'0'", "{}")
+    for angle in (1e-300, 5e-324, 0.0099, 179.995, 180.0):
+        assert changed(Choice(), theta=angle) == (Choice(), [said.format(repr(str(angle)))])
+    assert changed(Choice(), theta=0.01)[1] == []

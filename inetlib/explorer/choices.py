@@ -66,6 +66,9 @@ def _radii(profile):
 PROFILES = {name: radii for name, make in surfaces.PROFILES.items() if (radii := _radii(make()))}
 
 
+EDGE = 0.01  # degrees: angles closer to 0 and 180 are refused like these
+
+
 class Range(NamedTuple):
     """Of a number: both ends, the slider's step, the unit; open: without the ends."""
 
@@ -87,7 +90,8 @@ class Range(NamedTuple):
             number = float(text if isinstance(value, str) else value)
         except (TypeError, ValueError, OverflowError):
             return None
-        within = self.low < number < self.high or (number in self[:2] and not self.open)
+        edge = EDGE if self.open else 0
+        within = self.low + edge <= number <= self.high - edge
         if not within or (self.whole and not number.is_integer()):
             return None
         return int(number) if self.whole else number
