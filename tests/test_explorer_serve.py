@@ -1152,3 +1152,29 @@ def test_who_runs_a_notebook_in_vs_code_is_a_person(kernel, monkeypatch):
     shell = types.SimpleNamespace(user_ns={"__vsc_ipynb_file__": "a.ipynb"})
     monkeypatch.setattr("IPython.get_ipython", lambda: shell)
     assert notebook.person()
+
+
+def test_the_nets_to_begin_with_have_links_that_open_and_pictures(app_module):
+    import presets  # tools/presets.py
+
+    welcome = presets.welcome
+    for name, preset in welcome.PRESETS.items():
+        choice, problems = choices.parse(preset.link)
+        assert problems == [] and choice.parallelograms
+        drawn = imread(welcome.PICTURES / f"{name}.png")
+        assert drawn.shape[:2] == presets.SIZE[::-1] and drawn.std() > 0.05
+    assert len({preset.link for preset in welcome.PRESETS.values()}) == 12
+
+
+@pytest.mark.long
+def test_the_pictures_of_the_nets_to_begin_with_are_drawn_alike(app_module, monkeypatch):
+    import presets
+
+    from inetlib.drawings import same
+
+    monkeypatch.setattr(look, "PIXELS", 1200)
+    stored = {
+        n: (presets.welcome.PICTURES / f"{n}.png").read_bytes() for n in presets.welcome.PRESETS
+    }
+    for name, preset in presets.welcome.PRESETS.items():
+        assert same.picture(stored[name], presets.picture(preset), *same.FEW), name
