@@ -87,7 +87,7 @@ def test_a_typed_value_is_taken_and_a_wrong_one_is_explained(tab):
     reader = tab()
     assert is_drawn(reader.picture()) and reader.angles() == ["60.000000", "60.000000"]
     judge(reader)
-    reader.type("theta", "72.25")
+    reader.type("theta", "72,25\u00b0")
     assert reader.angles()[0] == "72.250000"
     judge(reader)
     for wrong in ("0", "180", "-5", "seventy", ""):

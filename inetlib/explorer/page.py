@@ -48,7 +48,7 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
             view = _view(plotter)
             with html.Div(classes="ex-side ex-right", **_named("numbers", role="region")):
                 _numbers()
-        _dialogs()
+        _dialogs(given)
         if not given:
             welcome.presets(server, _dialog)
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
@@ -105,7 +105,8 @@ def _number(name, label, condition="true", ends=None):
     low, high, step, unit = choices.ALLOWED[name][:4]
     low, high = ends or (low, high)
     value = {"model_value": (f"Number(Number({name}).toPrecision(10))",), "suffix": unit or None}
-    with html.Div(classes=f"ex-row in-{name}", v_show=condition):
+    about = {"v_show": condition, "title": welcome.TIPS[name]}
+    with html.Div(classes=f"ex-row in-{name}", **about):
         html.Label(label, v_pre=True)
         _slider(label, low, high, step, v_model=(name,))
         _field(label, change=f"{name} = $event.target.value", **value)
@@ -283,13 +284,13 @@ def _view(plotter):
     return view
 
 
-def _dialogs():
+def _dialogs(given):
     with _dialog("code_open", "The same net in Python"):
         html.Pre("{{ code }}", classes="ex-code")
         html.Div("V: vertices, Q: quads; angles are radians in Python.", classes="ex-note mt-2")
         click = "utils.get('inet').copy(code, 'code')"
         v3.VBtn("Copy", size="small", classes="mt-3", color="primary", click=click)
-    welcome.advice(_dialog)
+    welcome.advice(_dialog, given)
     gone = {"model_value": ("!!alert",), "update_modelValue": "alert = $event ? alert : ''"}
     v3.VSnackbar("{{ alert }}", timeout=7000, location="top", classes="out-alert", **gone)
 

@@ -114,6 +114,17 @@ PRESETS = {
         "kind=cover&source=five_skylights&trim=1&quads=500",
     ),
 }
+POLE = "the point that goes to infinity"
+TIPS = {  # on the numbers of the page
+    "theta": "angle between the diagonals of every face",
+    "theta0": "angle between the lines that join midpoints of opposite sides",
+    "m": "number of faces along a u-curve",
+    "n": "number of faces along a v-curve",
+    "quads": "about how many faces the surface gets",
+    "direction": "turns the net on the surface",
+    "bend": "bends the catenoid to the helicoid, or rolls the sheet",
+    **dict.fromkeys(("px", "py", "pz"), POLE),
+}
 HELP = {
     "Two angles": "Every quad has the same angle \u03b8 between its diagonals and the same angle "
     "\u03b8\u2080 between the lines that join midpoints of opposite sides. Two ratios say the "
@@ -177,11 +188,13 @@ def presets(server: Any, dialog: Callable) -> None:
                 html.Span(preset.words)
 
 
-def advice(dialog: Callable) -> None:
-    """The dialog that says how the page is used; dialog(name, title): of the page."""
+def advice(dialog: Callable, given: bool) -> None:
+    """The dialog that says how the page is used; dialog(name, title): of the page; given: whether
+    it shows a net from elsewhere, of which there is no tour."""
     with dialog("help_open", "How to use this page"):
         does = "help_open = false; utils.get('inet').tour(1)"
-        _step("Show the tour", does, "in-tour", variant="tonal")
+        if not given:
+            _step("Show the tour", does, "in-tour", variant="tonal")
         for title, words in HELP.items():
             html.H3(title, classes="mt-2 text-subtitle-2")
             html.P(words, classes="text-body-2")
