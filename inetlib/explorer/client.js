@@ -87,8 +87,10 @@ window.inet = {
       const part = document.querySelector(".ex-tour [data-target]")?.dataset.target;
       if (step) document.querySelector(part)?.scrollIntoView({ block: "nearest" });
     });
-    const next = () => document.querySelector(step ? ".in-next" : ".ex-view")?.focus({ preventScroll: true });
-    setTimeout(next, 300); // after a dialog that closes, which gives the focus back
+    setTimeout(() => { // after a dialog that closes, which gives the focus back
+      document.querySelector(step ? ".in-next" : ".ex-view")?.focus({ preventScroll: true });
+      if (this.loads < 9) window.trame.trigger("refit", [this.place()]); // the view has another size
+    }, 300);
   },
   welcome() {
     let seen = window !== window.top || !document.querySelector(".in-presets");
