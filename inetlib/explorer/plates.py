@@ -49,7 +49,7 @@ def _inscribed(shape, words, around=()):
     parts += [_line(A, C, "v", 1.5), _line(B, D, "u", 1.5)]
     parts += [_line(*side, "d1", 3) for side in ((B, C), (A, D))]
     parts += [_line(*side, "d2", 3) for side in ((B, A), (C, D))]
-    parts.append(_arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0]))
+    parts.append(_arc(B, C - B, A - B, min(26, 0.45 * least), NAMES[0], D - B))
     reach = min(22, 0.4 * abs(D - centre))
     parts.append(_arc(centre, D - centre, A - centre, reach, NAMES[1]))
     return _svg(BOX, parts, words)
@@ -163,9 +163,12 @@ def _text(x, y, words, anchor="middle"):
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}">{words}</text>'
 
 
-def _arc(apex, start, end, radius, label):
-    """An arc around the apex from the direction start to the direction end, and its name."""
+def _arc(apex, start, end, radius, label, line=None):
+    """An arc around the apex from the direction start to the direction end, and its name, on the
+    wider side of a line between them if there is one."""
     t = start / abs(start) * np.exp(1j * np.linspace(0, np.angle(end / start), 24))
-    at = apex + (radius + 11) * t[12]
+    sides = [(start, end)] if line is None else [(start, line), (line, end)]
+    one, two = max(sides, key=lambda side: round(abs(np.angle(side[1] / side[0])), 6))
+    at = apex + (radius + 11) * one / abs(one) * np.exp(0.5j * np.angle(two / one))
     x, y = np.clip(at.real, 8, BOX[0] - 8), np.clip(at.imag, 8, BOX[1] - 6)
     return _curve(apex + radius * t, 1.2) + _text(x, y + 4, label)
