@@ -107,7 +107,8 @@ window.inet = {
   },
   // At rest the view is drawn with two pixels or more for one of the screen, and shrunk: smooth
   // curves.  While something moves it is drawn as coarse as the screen, which is quicker.
-  ratio: window.devicePixelRatio || 1,
+  screen: Object.getOwnPropertyDescriptor(window, "devicePixelRatio").get.bind(window),
+  get ratio() { return this.screen() || 1; },
   fine: 1,
   widths: new Map(),
   rest() {
