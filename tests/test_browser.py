@@ -214,7 +214,7 @@ def test_an_optimisation_runs_can_be_stopped_and_run_again(tab):
     reader.page.locator(".in-stop").click()
     reader.page.locator(".out-message").wait_for()
     assert "stopped by the caller" in reader.text(".out-message")
-    assert reader.page.evaluate("inet.loads") > seen + 1  # it was seen on its way
+    reader.page.wait_for_function("n => inet.loads > n + 1", arg=seen)  # it was seen on its way
     reader.page.locator(".in-run").click()
     reader.page.locator(".out-progress").wait_for()
     reader.settled()

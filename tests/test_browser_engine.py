@@ -64,18 +64,20 @@ def test_a_tab_has_its_own_net_and_colours_whatever_a_closed_one_showed(served, 
 
 def test_when_the_program_ends_the_page_says_so_and_can_still_be_turned(served, context):
     process, address = served
-    reader, _ = opened(context, address, "m=7&n=7")
-    before = reader.picture()
+    reader, _ = opened(context, address, "kind=revolution&m=8&n=6")
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 0
     banner = reader.page.locator(".ex-ended")
     banner.wait_for()
     assert "inet explore" in banner.inner_text() and banner.get_attribute("role") == "alert"
     assert reader.page.locator(".in-theta").is_visible()  # no spinner in its place
+    before = reader.picture()
+    assert is_drawn(before)
     reader.page.locator(".ex-view").focus()
-    for _ in range(3):
-        reader.page.keyboard.press("ArrowUp")
-    reader.page.wait_for_timeout(300)
-    after = reader.picture()
-    assert is_drawn(after) and np.abs(after - before)[200:].mean() > 0.3  # below the banner
+    for _ in range(100):  # until it is drawn
+        reader.page.keyboard.press("ArrowLeft")
+        if np.abs(reader.picture() - before).mean() > 0.5:
+            break
+        reader.page.wait_for_timeout(50)
+    assert np.abs(reader.picture() - before).mean() > 0.5
     assert reader.errors == []
