@@ -197,7 +197,8 @@ def test_the_surface_and_the_ghost_are_sent_when_they_change_and_leave_nothing()
     assert shown.surface.n_cells == net.target.n_cells
     assert shown.ghost.n_cells == 4 * 4 + 5 * 3  # each edge once
     assert np.allclose(shown.ghost.points, other.V, atol=1e-6)
-    assert show(None, None)
+    assert shown.pale.prop.opacity < 1
+    assert show(None, None) and shown.pale.prop.opacity == 1  # else all is drawn several times
     assert shown.surface.n_points == shown.ghost.n_points == 1
     plotter.close()
 

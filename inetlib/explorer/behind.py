@@ -8,6 +8,7 @@ from .. import mesh, view
 from . import look
 
 MOST = 50_000  # triangles of the surface that a browser is given
+OPACITY = 0.3  # of the surface
 BINS = 100  # a side of the bounding box, for larger surfaces
 
 
@@ -34,7 +35,7 @@ class Behind:
         pyvista = view.pyvista_module()
         self.surface, self.ghost = pyvista.PolyData(), pyvista.PolyData()
         self.clear()
-        about = {"opacity": 0.3, "ambient": 0.4, "diffuse": 0.6, "smooth_shading": False}
+        about = {"ambient": 0.4, "diffuse": 0.6, "smooth_shading": False}
         self.pale = plotter.add_mesh(self.surface, **about)
         self.lines = plotter.add_mesh(self.ghost, lighting=False, line_width=1)
 
@@ -56,6 +57,8 @@ class Behind:
             return
         self.clear()
         self._known = known
+        # Whatever is translucent makes a browser draw all in several passes.
+        self.pale.prop.opacity = 1.0 if surface is None else OPACITY
         self.pale.prop.color, self.lines.prop.color = palette.cut, palette.families["rim"]
         if surface is not None:
             self.surface.points = np.asarray(surface.points - origin, np.float32)
