@@ -149,6 +149,7 @@ def test_nets_lie_on_the_surfaces_of_their_titles(name, net):
     assert off.size > 10 and np.abs(off).max() < 1e-12
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("panel", [f"{letter}{column}" for letter in "ABCDE" for column in "13"])
 def test_the_starts_of_fig_9_lie_on_the_surfaces_and_their_inversions(panel):
     V = drawn("fig09").data[f"net_{panel}"]
@@ -170,6 +171,7 @@ def test_the_quads_of_fig_4_have_the_printed_ratios():
     assert claims["lam_B"] == claims["mu_B"] == pytest.approx((1 + 5**0.5) / 2)
 
 
+@pytest.mark.notebook
 def test_bending_makes_no_chord_of_fig_7_longer_and_the_cylinder_closes():
     data, claims = drawn("fig07").data, drawn("fig07").claims
     flat = np.linalg.norm(data["domain"][:, None] - data["domain"], axis=2)
@@ -314,6 +316,7 @@ def test_table_1_is_the_stored_one(tmp_path):
     assert len(made) == 1 + 2 * 7 and all(len(line.split(",")) >= 13 for line in made)
 
 
+@pytest.mark.notebook
 @pytest.mark.parametrize("name", CAST)
 def test_no_hidden_part_of_a_curve_is_drawn_in_front(name):
     rng, found = np.random.default_rng(1), []
