@@ -18,7 +18,7 @@ help:
 	@echo "make book          the book, to be read in any browser: book/_build/html/index.html"
 	@echo "make course        the notebooks to hand out, and with solutions (FOLDER=... for your own)"
 	@echo "make test          all tests but those in a browser, every notebook rerun"
-	@echo "make test-fast     the tests without notebooks and other processors"
+	@echo "make test-fast     the tests without notebooks, programs that are started, other processors"
 	@echo "make test-long     what other processors would draw, in all settings; half an hour"
 	@echo "make test-browser  the explorer in Chromium; installs it on Debian and Ubuntu"
 	@echo "make test-book     the book, every page of it, in Chromium with no network"
@@ -52,7 +52,7 @@ test: $(READY)
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not browser"
 
 test-fast: $(READY)
-	$(BIN)/python -m pytest -p no:nbmake -n auto --dist loadfile --no-loadscope-reorder -m "not notebook and not browser and not elsewhere"
+	$(BIN)/python -m pytest -p no:nbmake -n auto --dist loadfile --no-loadscope-reorder -m "not (notebook or program or browser or elsewhere)"
 
 test-long: $(READY)
 	$(BIN)/python -m pytest -m "long or elsewhere" --long -n auto --dist load

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
+pytestmark = pytest.mark.program
+
 SCRIPT = Path(__file__).resolve().parent.parent / "bench" / "bench_solver.py"
 BENCH = SimpleNamespace(**runpy.run_path(str(SCRIPT)))
 

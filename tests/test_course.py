@@ -16,6 +16,8 @@ import pytest
 from inetlib import cli, exercises
 from inetlib.exercises import grade
 
+pytestmark = pytest.mark.program
+
 ROOT = Path(__file__).resolve().parent.parent
 IMPORTS = "import os, shutil, sys, tempfile\nimport numpy as np\nfrom inetlib import exercises"
 RING = "def answer(valences):\n    return sum(k - 1 for k in valences) % 2 == 0\n"

@@ -30,6 +30,8 @@ from inetlib.explorer import choices, look, nets, notebook, plates
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.session import Session
 
+pytestmark = pytest.mark.program
+
 HOST = "127.0.0.1"
 LIMIT = 60  # seconds after which a test gives up: nothing here takes so long
 SIDE = {"position": [3.0, -4.0, 5.0], "focalPoint": [0.0, 0.0, 0.0]}

@@ -13,6 +13,8 @@ import pytest
 
 from inetlib import io, mesh
 
+pytestmark = pytest.mark.program
+
 pytest.importorskip("resource", reason="limits of memory need a Unix")
 FUZZING = Path(__file__).with_name("fuzzing.py")
 NUMBERS = b"-1", b"0", b"nan", b"1e999", b"99999999999999999999", b"0.5", b"", b"3000000000", b"x"

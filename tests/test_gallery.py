@@ -13,6 +13,8 @@ import pytest
 from inetlib import measure
 from inetlib.drawings import same
 
+pytestmark = pytest.mark.program
+
 ENTRIES = json.loads((gallery.FOLDER / "gallery.json").read_text(encoding="utf-8"))
 NAMES = [net.__name__ for net in gallery.NETS]
 

@@ -22,6 +22,8 @@ import inetlib
 from inetlib import cli, design, ending, examples, files, io, start
 from inetlib.design import report
 
+pytestmark = pytest.mark.program
+
 ROOT = Path(__file__).resolve().parent.parent
 ANGLES = "--theta", "60", "--theta0", "60"
 COVER = ["cover", "roof", *ANGLES, "--quads", "60", "-o", "net.obj"]

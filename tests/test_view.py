@@ -16,6 +16,8 @@ from matplotlib.image import imread
 from inetlib import explorer, mesh, plot, view
 from inetlib.explorer import notebook
 
+pytestmark = pytest.mark.program
+
 V = np.array([[i + 0.3 * j, j, 0.2 * i * j] for i in range(4) for j in range(4)], dtype=float)
 Q = mesh.grid_quads(3, 3)
 ABOVE = (-np.pi / 2, np.pi / 2)  # x to the right, y up
