@@ -1,4 +1,11 @@
 // What the explorer's page does on its own: the address, files, the clipboard, the keyboard.
+// The view smooths its own picture at rest (see `rest`): several samples a pixel cost time twice.
+{
+  const { getContext } = HTMLCanvasElement.prototype;
+  HTMLCanvasElement.prototype.getContext = function (kind, options) {
+    return getContext.call(this, kind, kind === "webgl2" ? { ...options, antialias: false } : options);
+  };
+}
 window.inet = {
   view() { return window.trame.refs.view; },
   camera() {
@@ -106,7 +113,8 @@ window.inet = {
     this.rest();
   },
   // At rest the view is drawn with two pixels or more for one of the screen, and shrunk: smooth
-  // curves.  While something moves it is drawn as coarse as the screen, which is quicker.
+  // curves.  While something moves it is drawn as coarse as the screen, and with thin curves where
+  // there are many, which is quicker.  Widths: [the net's own, the one that is set] by property.
   screen: Object.getOwnPropertyDescriptor(window, "devicePixelRatio").get.bind(window),
   get ratio() { return this.screen() || 1; },
   fine: 1,
@@ -119,9 +127,15 @@ window.inet = {
     const { renderer } = this.view().$.provides.view;
     if (!renderer || this.sharp === fine > 0) return;
     this.sharp = fine > 0;
-    if (this.sharp) this.widths = new Map(renderer.getActors().map((a) => [a.getProperty(), a.getProperty().getLineWidth()]));
+    const known = this.widths;
     this.fine = fine || 1;
-    this.widths.forEach((width, of) => of.setLineWidth(this.sharp ? width * this.ratio * this.fine : width));
+    this.widths = new Map(renderer.getActors().map((actor) => {
+      const of = actor.getProperty(), now = of.getLineWidth(), before = known.get(of);
+      const own = before?.[1] === now ? before[0] : now;
+      const shown = this.sharp ? own * this.ratio * this.fine : own > 2 ? own : Math.min(own, 1);
+      of.setLineWidth(shown);
+      return [of, [own, shown]];
+    }));
     this.view().resize();
   },
   ended() {

@@ -2,7 +2,6 @@
 
 import io
 from collections.abc import Callable
-from itertools import pairwise
 from typing import NamedTuple
 
 import matplotlib
@@ -135,14 +134,14 @@ def layout(Q, count, families, parallelograms=False, cover=None) -> Layout:
         triangles = np.stack([Q, quads, np.roll(quads, 1, axis=1)], axis=2).reshape(-1, 3)
         count += len(edges)
     if {"d1", "d2"} & set(families):
-        centre = np.broadcast_to(count + np.arange(len(Q))[:, None], Q.shape)
-        spokes, means = [centre, Q], [*means, Q]
-        if parallelograms:  # over the side of the parallelogram, down to the corner
-            spokes.insert(1, count + len(Q) + np.arange(Q.size).reshape(-1, 4))
+        if parallelograms:  # flat: from the corner down to a side, and straight across it
+            across = count + np.arange(Q.size).reshape(-1, 4)
             means.append(np.stack([Q, Q, before, after], axis=2).reshape(-1, 4))
+            pieces = np.stack([Q, across], axis=2), across
         else:
+            centre = np.broadcast_to(count + np.arange(len(Q))[:, None], Q.shape)
             quads, triangles = Q[:0], np.stack([Q, after, centre], axis=2).reshape(-1, 3)
-        pieces = [np.stack(p, axis=2) for p in pairwise(spokes)]
+            means, pieces = [Q], [np.stack([centre, Q], axis=2)]
         for name, corners in (("d1", [0, 2]), ("d2", [1, 3])):
             lines[name] = np.concatenate([p[:, corners].reshape(-1, 2) for p in pieces])
     cut, rim = np.empty((0, 3), dtype=np.int64), {}

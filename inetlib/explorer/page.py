@@ -41,6 +41,8 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
     with VAppLayout(server, theme=theme, style=("palette",)):
         for name in ("page.css", "touch.css"):
             client.Style((FOLDER / name).read_text(encoding="utf-8"))
+        for name in ("client.js", "touch.js"):  # before the view is there
+            client.Script((FOLDER / name).read_text(encoding="utf-8"))
         _bar(given)
         with v3.VMain(), html.Div(classes="ex"):
             with html.Div(classes="ex-side ex-left", **_named("what is shown", role="region")):
@@ -52,8 +54,6 @@ def build(server: Any, plotter: Any, given: bool = False) -> Any:
         if not given:
             welcome.presets(server, _dialog)
         client.JSEval(ref="address", exec="utils.get('inet').link($event)")
-        for name in ("client.js", "touch.js"):
-            client.Script((FOLDER / name).read_text(encoding="utf-8"))
     return view
 
 
