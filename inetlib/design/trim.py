@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from .. import mesh, panels
+from .. import mesh, panels, ties
 from ..reference import CORNER
 from . import faces as cut
 from . import overlay
@@ -75,7 +75,7 @@ def uncrossed(
     while (bad := panels.crossed(V, trimmed.polygons)).size:
         far = np.linalg.norm(V - plain, axis=1)
         corners = [trimmed.polygons[k] for k in bad]
-        moved = [x[np.argmax(far[x] / _near(plain[x]))] for x in corners]
+        moved = [x[ties.first_largest(far[x] / _near(plain[x]))] for x in corners]
         lost = np.isin(Q, moved).any(axis=1)
         if not lost.any() or lost.all():
             break
