@@ -389,14 +389,14 @@ def test_extreme_angles_make_a_net_or_a_sentence_and_the_former_net_stays(name):
     made = built(m=6, n=5, **CONSTRUCTED[name])
     counts = {True: 0, False: 0}
     for theta, theta0 in EXTREME:
-        former = made.V, made.Q, made.message, made.shown
+        former, said = (made.V, made.Q, made.shown), made.message
         assert made.change(theta=theta, theta0=theta0) == []
         made.construct()
         counts[bool(made.problem)] += 1
         if made.problem:
             assert made.problem.startswith("no net: ")
-            now = made.V, made.Q, made.message, made.shown
-            assert all(a is b for a, b in zip(former, now, strict=True))
+            now = made.V, made.Q, made.shown
+            assert all(a is b for a, b in zip(former, now, strict=True)) and made.message == said
         else:
             assert made.shown == made.choice and np.isfinite(made.V).all()
             assert np.isfinite(measure.angles(made.V, made.Q)).all()
@@ -620,16 +620,16 @@ def test_a_search_begins_with_the_start_stops_after_the_step_under_way_and_keeps
 
 
 def test_a_step_that_comes_late_does_not_take_the_place_of_the_end(monkeypatch):
-    made, known = Session(), session.report.report
+    made, known = Session(), measure.planarity
     made.change(kind="freeform", m=4, n=4)
     run = made.begin()
 
-    def late(*args, **wanted):  # the search ends while the step is measured
-        monkeypatch.setattr(session.report, "report", known)
+    def late(*net):  # the search ends while the step is measured
+        monkeypatch.setattr(measure, "planarity", known)
         made.search(run)
-        return known(*args, **wanted)
+        return known(*net)
 
-    monkeypatch.setattr(session.report, "report", late)
+    monkeypatch.setattr(measure, "planarity", late)
     assert not made.on_the_way(run, *surfaces.freeform_patch(4, 4))
     assert made.message.startswith("converged") and made.run is None
 

@@ -330,7 +330,8 @@ async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, 
     await change(app, kind="plane")
     await until(lambda: not app.state.searching)
     alone = built(m=5, n=5, theta=100)
-    assert app.state.numbers == texts(alone) and not over.is_set()
+    await until(lambda: app.state.numbers == texts(alone))
+    assert not over.is_set()
     gate.set()
     await until(over.is_set)
     await asyncio.sleep(0.02)  # for what the thread may have left to do here

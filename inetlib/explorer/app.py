@@ -18,6 +18,7 @@ from .play import Play
 from .session import Session
 
 PACE = 0.12  # seconds that a step of an optimisation is seen at least
+SENT = 0.001  # seconds that a picture is given to be sent, before there is more to say
 REST = 0.2  # seconds without a change before an optimisation begins
 NEW_PLACE = {"kind", "map", "surface", "source", "moebius"}  # the net is somewhere else
 SIGHTS = {"from_above": scene.VIEWS["plane"], "from_side": (-60.0, 15.0)}
@@ -37,7 +38,8 @@ class App:
         self.scene = scene.borrow()
         self.aspect, self.sight, self.fitted = 1.0, None, None
         self.placed = []  # the camera of the link, until another one is asked for
-        self._task, self._search, self._remake, self._whole = None, None, False, True
+        self._task = self._search = None
+        self._asked, self._remake, self._whole = False, False, True
         self._worker = ThreadPoolExecutor(
             1, "search"
         )  # a new one waits until the old one has ended
@@ -160,7 +162,7 @@ class App:
 
     def _soon(self, remake):
         """Show the net when the changes that are waiting have come; remake: make it first."""
-        self._remake = self._remake or remake
+        self._asked, self._remake = True, self._remake or remake
         if self._task is None or self._task.done():
             self._task = asyncio.create_task(self._safely(self._refresh()))
 
@@ -178,20 +180,25 @@ class App:
 
     async def _refresh(self):
         await asyncio.sleep(0)
-        remake, self._remake = self._remake, False
-        search = remake and self.session.must_search
-        if remake:
-            self.session.stop()
-            if self._search is not None:
-                self._search.cancel()
-            self.state.searching = search
-        if search:
-            self._search = asyncio.create_task(self._safely(self._find()))
-            self.state.progress = "preparing \u2026"
-        elif remake:
-            self.session.construct()
-        with self.state:
-            (self._plates if search else self._show)()
+        while self._asked:
+            self._asked, remake, self._remake = False, self._remake, False
+            search = remake and self.session.must_search
+            if remake:
+                self.session.stop()
+                if self._search is not None:
+                    self._search.cancel()
+                self.state.searching = search
+            if search:
+                self._search = asyncio.create_task(self._safely(self._find()))
+                self.state.progress = "preparing \u2026"
+            elif remake:
+                self.session.construct()
+            with self.state:
+                (self._plates if search else self._draw)()
+            if not search:
+                await asyncio.sleep(SENT)
+                with self.state:
+                    self._say()
 
     async def _find(self):
         """Search for the net of the choice, when the changes have come to rest."""
@@ -223,12 +230,12 @@ class App:
                 self._show()
 
     def _show(self):
-        """The net, its numbers and drawings, as the session has them."""
+        self._draw()
+        self._say()
+
+    def _draw(self):
+        """The net in the view, as the session has it; without one, the surface."""
         session, state = self.session, self.state
-        state.problem, state.message = session.problem, session.message
-        state.can_search = session.must_search
-        self._plates()
-        self.play.mend()
         if session.V is None:
             self.play.alone()
             return
@@ -241,6 +248,16 @@ class App:
         elif scene.is_lost(session.V, self.fitted):
             self.placed = []
             self.look("refit")
+
+    def _say(self):
+        """What there is to say of the net: sentences, numbers and drawings."""
+        session, state = self.session, self.state
+        state.problem, state.message = session.problem, session.message
+        state.can_search = session.must_search
+        self._plates()
+        self.play.mend()
+        if session.V is None:
+            return
         state.numbers = plates.numbers(session.report, session.V, session.Q)
         asked = session.shown.theta, session.shown.theta0
         state.histogram_svg = plates.histograms(session.deviations(), asked)

@@ -16,7 +16,7 @@ from . import behind, choices, look, nets, remedy
 SAVED = (".svg", ".png", *io.WRITERS)  # what `save` writes
 
 
-NET = "V", "Q", "cover", "message", "shown", "report"  # what belongs to the net that is shown
+NET = "V", "Q", "cover", "shown", "_words", "_report"  # what belongs to the net that is shown
 
 
 class Session:
@@ -30,8 +30,9 @@ class Session:
     def __init__(self, surface=None, path=None, net=None):
         self.surface, self.path, self.given = surface, path, net is not None
         self.choice = self.shown = choices.Choice()
-        self.V = self.Q = self.cover = self.report = self.run = None
-        self.message, self.problem, self.steps = "", "", 0
+        self.V = self.Q = self.cover = self.run = self._report = None
+        self._words = self.problem = ""
+        self.steps = 0
         self._targets = {}  # surfaces by name: what is shown of them
         self._lock = threading.Lock()  # a search ends in its own thread
         if surface is not None:
@@ -43,7 +44,12 @@ class Session:
             self.change(theta=theta, theta0=theta0, parallelograms=False)
             name = Path(path).name if path else "a net from Python"
             words = f"{name}; deviations are from its mean angles"
-            self._settle(None, None, lambda _: (V, Q, words, cover))
+
+            def make(_):
+                measure.quality(V, Q)  # refuses faces that are not oriented alike
+                return V, Q, words, cover
+
+            self._settle(None, None, make)
             if self.problem:
                 raise ValueError(self.problem)
 
@@ -67,6 +73,24 @@ class Session:
         if of_file and self.path:
             return f"Lengths are in the unit of {Path(self.path).name}."
         return "Lengths have no unit."
+
+    @property
+    def report(self):
+        """The `Report` of the net that is shown, made when it is asked for; None without a net."""
+        with self._lock:
+            if self._report is None and self.V is not None:
+                theta, theta0 = np.radians([self.shown.theta, self.shown.theta0])
+                self._report = report.report(self.V, self.Q, theta=theta, theta0=theta0)
+            return self._report
+
+    @property
+    def message(self):
+        """How the net that is shown was found, and whether it has faults, a sentence."""
+        if self.V is None or (self.shown.kind in nets.FOUND and not self.given):
+            return self._words
+        faults, quads = self.report.flips + self.report.darts, len(self.Q)
+        many = f"; but {faults} of {quads} faces are flipped or not convex"
+        return self._words + many * (faults > 0)
 
     @property
     def must_search(self):
@@ -99,12 +123,7 @@ class Session:
         choice, problem = run.choice if run else self.choice, ""
         try:
             V, Q, message, cover = make(choice, *known)
-            theta, theta0 = np.radians([choice.theta, choice.theta0])
-            about = cover.report if cover else report.report(V, Q, theta=theta, theta0=theta0)
-            cover = cover if cover and cover.polygons else None
-            faults = about.flips + about.darts
-            if faults and run is None and "flipped" not in message:
-                message += f"; but {faults} of {about.quads} faces are flipped or not convex"
+            measure.planarity(V, Q)  # refuses faces that have collapsed
         except (ValueError, ArithmeticError, MemoryError) as error:
             problem = f"no net: {error or type(error).__name__}"
         with self._lock:
@@ -112,8 +131,9 @@ class Session:
                 return False
             self.run, self.problem = then, problem
             if not problem:
-                self.V, self.Q, self.message, self.cover = V, Q, message, cover
-                self.shown, self.report = choice, about
+                self.V, self.Q, self.shown, self._words = V, Q, choice, message
+                self.cover = cover if cover and cover.polygons else None
+                self._report = cover and cover.report
             return True
 
     def begin(self):
