@@ -5,7 +5,7 @@ import signal
 
 import numpy as np
 import pytest
-from browsing import Reader, is_drawn, start
+from browsing import Reader, image, is_drawn, start
 from matplotlib.colors import to_rgb
 
 from inetlib.explorer import look
@@ -62,12 +62,34 @@ def test_a_tab_has_its_own_net_and_colours_whatever_a_closed_one_showed(served, 
         reader.page.close()
 
 
+NO_WEBGL = """() => {
+  const known = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind.startsWith("webgl") ? null : known.call(this, kind, ...more);
+  };
+}"""
+
+
+def test_a_browser_that_cannot_draw_says_so_and_its_numbers_and_pictures_are_right(served, context):
+    page = context.new_page()
+    page.add_init_script(f"({NO_WEBGL})()")
+    reader = Reader(page, served[1], "kind=revolution&m=8&n=6")
+    banner = page.locator(".ex-banner")
+    assert "WebGL 2" in banner.inner_text() and banner.get_attribute("role") == "alert"
+    reader.type("theta", "75")
+    assert reader.angles() == ["75.000000", "60.000000"]
+    with page.expect_download() as waiting:
+        page.evaluate("inet.save('.png', 'image/png')")
+    assert is_drawn(image(waiting.value.path().read_bytes()))
+    page.close()
+
+
 def test_when_the_program_ends_the_page_says_so_and_can_still_be_turned(served, context):
     process, address = served
     reader, _ = opened(context, address, "kind=revolution&m=8&n=6")
     process.send_signal(signal.SIGINT)
     assert process.wait(20) == 0
-    banner = reader.page.locator(".ex-ended")
+    banner = reader.page.locator(".ex-banner")
     banner.wait_for()
     assert "inet explore" in banner.inner_text() and banner.get_attribute("role") == "alert"
     assert reader.page.locator(".in-theta").is_visible()  # no spinner in its place

@@ -634,6 +634,20 @@ def test_a_step_that_comes_late_does_not_take_the_place_of_the_end(monkeypatch):
     assert made.message.startswith("converged") and made.run is None
 
 
+def test_what_a_search_finds_is_shown_when_it_is_taken():
+    made = built(m=4, n=4)
+    former = made.V, made.Q, made.shown, made.report, made.message
+    made.change(kind="freeform")
+    run = made.begin()
+    found = made.find(run)
+    assert made.run is run
+    now = made.V, made.Q, made.shown, made.report
+    assert all(a is b for a, b in zip(former[:4], now, strict=True))
+    assert made.message == former[4] and made.take(run, found) and made.run is None
+    assert made.message.startswith("converged") and made.shown.kind == "freeform"
+    assert not made.take(run, found)
+
+
 def test_what_an_older_run_finds_is_forgotten():
     made = built(m=4, n=4)
     former, newer = made.V, []

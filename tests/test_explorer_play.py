@@ -253,6 +253,6 @@ def test_where_there_never_was_a_net_that_of_an_offer_stands_in_and_the_problem_
     found.search(found.begin())
     choice, problem = found.choice, found.problem
     assert problem and found.V is None
-    found.stand_in(source="roof")
+    found.stand_in(found.other(source="roof"))
     assert (found.choice, found.problem) == (choice, problem) and found.is_faulty
     assert found.shown.source == "roof" and len(found.Q) > 30

@@ -318,13 +318,14 @@ async def test_stop_is_heard_before_the_first_step(app, app_module, quick, monke
 
 
 async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, app_module, gate):
-    over, search = threading.Event(), app.session.search
+    over, find = threading.Event(), app.session.find
 
-    def searched(*args):
-        search(*args)
+    def found(*args):
+        made = find(*args)
         over.set()
+        return made
 
-    app.session.search = searched
+    app.session.find = found
     app.arrive("?kind=freeform&m=5&n=5&theta=100", False, 1.0)
     await until(lambda: app.state.progress == app_module.BEGUN)
     await change(app, kind="plane")

@@ -212,8 +212,8 @@ class App:
         def told(words):
             loop.call_soon_threadsafe(self._tell, run, words)
 
-        await loop.run_in_executor(self._worker, self.session.search, run, seen, told)
-        if self.session.run is None:
+        made = await loop.run_in_executor(self._worker, self.session.find, run, seen, told)
+        if self.session.take(run, made):
             with self.state:
                 self.state.searching = False
                 self._show()

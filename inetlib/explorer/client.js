@@ -140,16 +140,23 @@ window.inet = {
   },
   ended() {
     // The page stays as it is and can be turned; what asks the program is dead.
-    const words = "The program that made this page has ended. Start it again with \u201cinet explore\u201d "
-      + "and open the address it prints, or run the cell of the notebook again.";
-    const banner = Object.assign(document.createElement("div"), { className: "ex-ended", textContent: words });
-    banner.setAttribute("role", "alert");
-    document.body.append(banner);
+    this.banner("The program that made this page has ended. Start it again with \u201cinet explore\u201d "
+      + "and open the address it prints, or run the cell of the notebook again.");
     document.querySelectorAll(".ex-side, .ex-status, .ex-tools, .v-app-bar").forEach((e) => { e.inert = true; });
+  },
+  banner(words) {
+    const box = Object.assign(document.createElement("div"), { className: "ex-banner", textContent: words });
+    box.setAttribute("role", "alert");
+    document.body.append(box);
   },
   arrive() {
     this.listen();
     window.trame.client.onConnectionClose(() => this.ended());
+    if (!document.createElement("canvas").getContext("webgl2")) {
+      this.banner("This browser does not draw the net: WebGL 2 is missing or switched off. Switch hardware "
+        + "acceleration on in its settings, or open this address in another one. The numbers are those of "
+        + "the net, and Save writes its picture.");
+    }
     const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
     window.trame.trigger("arrive", [window.location.search, dark, this.place()]);
   },

@@ -84,7 +84,7 @@ class Play:
 
         found = await asyncio.to_thread(remedy.remedies, choice, session.surface, going)
         if found and session.V is None:
-            await asyncio.to_thread(session.stand_in, **found[0])
+            session.stand_in(await asyncio.to_thread(session.other, **found[0]))
             self.app.follow(set())
         if going():
             offers = [{"words": remedy.words(values), "values": values} for values in found]

@@ -1,7 +1,6 @@
 """One explorer without a page: a choice, its net, what there is to say and to save."""
 
 import tempfile
-import threading
 from contextlib import suppress
 from math import radians
 from pathlib import Path
@@ -34,7 +33,6 @@ class Session:
         self._words = self.problem = ""
         self.steps = 0
         self._targets = {}  # surfaces by name: what is shown of them
-        self._lock = threading.Lock()  # a search ends in its own thread
         if surface is not None:
             self.change(kind="cover", source="file")
         if self.given:
@@ -45,11 +43,11 @@ class Session:
             name = Path(path).name if path else "a net from Python"
             words = f"{name}; deviations are from its mean angles"
 
-            def make(_):
+            def make():
                 measure.quality(V, Q)  # refuses faces that are not oriented alike
                 return V, Q, words, cover
 
-            self._settle(None, None, make)
+            self.take(None, _made(make))
             if self.problem:
                 raise ValueError(self.problem)
 
@@ -77,11 +75,10 @@ class Session:
     @property
     def report(self):
         """The `Report` of the net that is shown, made when it is asked for; None without a net."""
-        with self._lock:
-            if self._report is None and self.V is not None:
-                theta, theta0 = np.radians([self.shown.theta, self.shown.theta0])
-                self._report = report.report(self.V, self.Q, theta=theta, theta0=theta0)
-            return self._report
+        if self._report is None and self.V is not None:
+            theta, theta0 = np.radians([self.shown.theta, self.shown.theta0])
+            self._report = report.report(self.V, self.Q, theta=theta, theta0=theta0)
+        return self._report
 
     @property
     def message(self):
@@ -116,25 +113,21 @@ class Session:
         self.stop()
         self.run = None
         if not self.given:
-            self._settle(None, None, nets.make)
+            self.take(None, _made(nets.make, self.choice))
 
-    def _settle(self, run, then, make, *known):
-        """Show the net made, or say why there is none; then: the run that is under way after it."""
-        choice, problem = run.choice if run else self.choice, ""
-        try:
-            V, Q, message, cover = make(choice, *known)
-            measure.planarity(V, Q)  # refuses faces that have collapsed
-        except (ValueError, ArithmeticError, MemoryError) as error:
-            problem = f"no net: {error or type(error).__name__}"
-        with self._lock:
-            if run is not self.run:
-                return False
-            self.run, self.problem = then, problem
-            if not problem:
-                self.V, self.Q, self.shown, self._words = V, Q, choice, message
-                self.cover = cover if cover and cover.polygons else None
-                self._report = cover and cover.report
-            return True
+    def take(self, run, made, then=None):
+        """Show what was found in a run, or say why there is no net; False for a run that is over.
+
+        then: the run under way after it."""
+        if run is not self.run:
+            return False
+        self.run, (net, self.problem) = then, made
+        if net is not None:
+            self.V, self.Q, self._words, cover = net
+            self.shown = run.choice if run else self.choice
+            self.cover = cover if cover and cover.polygons else None
+            self._report = cover and cover.report
+        return True
 
     def begin(self):
         """A new run, for `search`: its choice, and whether it shall stop, as an older one must."""
@@ -148,8 +141,14 @@ class Session:
             self.run.stopped = True
 
     def search(self, run, seen=None, told=None):
-        """Find the net of a run by optimisation; seen(V, Q, steps) sees the start and each step,
-        told(words) hears of the stages before."""
+        """Find the net of a run by optimisation, as `find`, and show it."""
+        return self.take(run, self.find(run, seen, told))
+
+    def find(self, run, seen=None, told=None):
+        """What the optimisation of a run finds, for `take`; nothing is shown, so that a thread of
+        its own may do it.
+
+        seen(V, Q, steps) sees the start and each step, told(words) hears of the stages before."""
 
         def stage(name):
             if run is not self.run or run.stopped:
@@ -168,20 +167,23 @@ class Session:
             return not run.stopped
 
         self._see(run.choice)
-        self._settle(run, None, nets.make, self.surface, after, stage)
+        return _made(nets.make, run.choice, self.surface, after, stage)
 
-    def stand_in(self, **values):
-        """Where there is no net yet, show that of another choice; the problem stays."""
+    def other(self, **values):
+        """The session of another choice and its net, without progress."""
         other = Session(self.surface, self.path)
         other.choice, _ = choices.changed(self.choice, **values)
-        other._settle(None, None, nets.make, self.surface)
-        with self._lock:
-            if self.V is None:
-                vars(self).update({name: vars(other)[name] for name in NET})
+        other.take(None, _made(nets.make, other.choice, self.surface))
+        return other
+
+    def stand_in(self, other):
+        """Where there is no net yet, show that of another session; the problem stays."""
+        if self.V is None:
+            vars(self).update({name: vars(other)[name] for name in NET})
 
     def on_the_way(self, run, V, Q):
         """Show a net that a run has on its way; False when the run is over."""
-        return self._settle(run, run, lambda _: (V, Q, f"step {self.steps}", None))
+        return self.take(run, _made(lambda: (V, Q, f"step {self.steps}", None)), run)
 
     @property
     def target(self):
@@ -235,3 +237,13 @@ class Session:
             curves = mesh.polylines(self.Q, edges) if has_curves else None
             io.write(path, self.V, self.Q, curves, polygons)
             return path.read_bytes()
+
+
+def _made(make, *args):
+    """What make(*args) returns, as of `nets.make`, and "", or None and why there is no net."""
+    try:
+        V, Q, words, cover = make(*args)
+        measure.planarity(V, Q)  # refuses faces that have collapsed
+    except (ValueError, ArithmeticError, MemoryError) as error:
+        return None, f"no net: {error or type(error).__name__}"
+    return (V, Q, words, cover), ""
