@@ -1,10 +1,12 @@
 """Whether the explorer's page can be read and used by everybody, in a real browser (Chromium)."""
 
 import os
+import re
 import signal
 
+import numpy as np
 import pytest
-from browsing import Reader, is_drawn, start
+from browsing import Reader, image, is_drawn, start
 
 from inetlib.explorer import choices, welcome
 
@@ -41,6 +43,9 @@ CONTRAST = """() => {  // texts whose contrast is below 4.5, with opacity and wh
   }
   return [count, found];
 }"""
+OPACITY = (  # of the dialog that comes
+    "() => getComputedStyle(document.querySelector('.v-overlay--active > :last-child')).opacity"
+)
 WIDE = "() => document.documentElement.scrollWidth - innerWidth"
 
 
@@ -132,6 +137,7 @@ def test_the_tour_comes_once_is_led_by_keys_and_is_remembered(reader):
 
 def test_a_preset_opens_the_net_of_its_picture(reader):
     page = reader.page
+    opened(reader, "kind=plane&m=8&n=6")
     page.locator(".in-presets").click()
     cards = page.locator(".ex-card")
     assert cards.count() == len(welcome.PRESETS)
@@ -140,10 +146,7 @@ def test_a_preset_opens_the_net_of_its_picture(reader):
     )
     cards.last.scroll_into_view_if_needed()
     page.wait_for_function(f"() => ({loaded})() == {len(welcome.PRESETS)}")
-    shown = (
-        "() => getComputedStyle(document.querySelector('.v-overlay--active > :last-child')).opacity"
-    )
-    page.wait_for_function(f"() => ({shown})() == 1")
+    page.wait_for_function(f"() => ({OPACITY})() == 1")
     assert page.evaluate(CONTRAST)[1] == []
     page.locator(".in-preset-vase").click()
     reader.settled()
@@ -152,6 +155,24 @@ def test_a_preset_opens_the_net_of_its_picture(reader):
     page.get_by_title("Undo").click()
     reader.settled()
     assert reader.choice().kind == "plane"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_pictures_of_the_presets_are_as_light_or_dark_as_the_page(reader, scheme):
+    opened(reader, "kind=plane&m=8&n=6", scheme)
+    reader.page.locator(".in-presets").click()
+    card = reader.page.locator(".in-preset-hourglass img")
+    card.scroll_into_view_if_needed()
+    card.evaluate("e => e.decode()")
+    reader.page.wait_for_function(f"() => ({OPACITY})() == 1")
+    found = image(card.screenshot())
+    assert is_drawn(found)
+    page = reader.page.evaluate("getComputedStyle(document.documentElement).backgroundColor")
+    assert np.abs(found[3, 3] - list(map(int, re.findall(r"\d+", page)))).max() < 8
+    inner = found[found.shape[0] // 3 : -found.shape[0] // 3]
+    inner = inner[np.abs(inner - found[3, 3]).sum(axis=-1) > 120]
+    red, green, blue = inner.reshape(-1, 3).mean(axis=0)
+    assert green > blue and green > red - 20  # of four families together, in either light
 
 
 def test_all_is_there_at_twice_the_size_and_nothing_moves_where_that_is_unwanted(reader):
