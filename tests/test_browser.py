@@ -125,7 +125,7 @@ def test_every_kind_of_net_can_be_chosen(tab):
 
 
 def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
-    reader = tab("kind=cover&source=skylight&quads=200&target=0")
+    reader = tab("kind=cover&source=skylight&quads=200&target=0&trim=0")
     switch, cut = (reader.page.locator(name) for name in (".in-trim", ".out-cut"))
     assert switch.is_visible() and not cut.is_visible()
     judge(reader)
@@ -135,8 +135,8 @@ def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
     reader.settled()
     judge(reader)
     whole, cut_ones = (len(reader.made[name]) for name in ("Q", "polygons"))
-    assert cut.inner_text() == f"{whole} whole, {cut_ones} cut"
-    assert reader.page.locator("h2", has_text=f"Over all {whole} faces").is_visible()
+    assert cut.inner_text() == str(cut_ones)
+    assert reader.page.locator("h2", has_text=f"Over all {whole} whole faces").is_visible()
     seen.append(reader.picture())
     before, after = ((np.abs(x - x[-5, 5]).sum(axis=-1) > 30).sum() for x in seen)
     assert after > 1.1 * before  # more is covered
@@ -144,11 +144,11 @@ def test_panels_to_the_edge_can_be_switched_on_and_a_hole_be_an_opening(tab):
     assert choice.trim and choice.openings == "fill"
     reader.choose("source", choices.OPTIONS["source"]["two_skylights"])
     assert not reader.page.locator(".in-openings").is_visible()
-    assert re.fullmatch(r"\d+ whole, \d+ cut", cut.inner_text())
+    assert cut.inner_text().isdigit()
     reader.choose("kind", choices.OPTIONS["kind"]["plane"])
     assert not switch.is_visible() and not cut.is_visible()
     judge(reader)
-    reader.page.goto(f"{reader.address}?kind=cover&quads=60&trim=1")
+    reader.page.goto(f"{reader.address}?kind=cover&quads=60")
     reader.page.wait_for_selector(".out-cut:not(:empty)")
     reader.settled()
     seen = reader.picture()[40:-3]  # below the shadow of the bar, above the line
@@ -319,8 +319,8 @@ STATES = [
     "kind=isothermal&surface=minimal&moebius=1&shade=1",
     "kind=revolution&families=u,v,d1,d2&parallelograms=1",
     "kind=freeform&theta0=45",
-    "kind=cover&quads=100&shade=1",
-    "kind=cover&source=skylight&quads=200&trim=1",
+    "kind=cover&quads=100&trim=0&shade=1",
+    "kind=cover&source=skylight&quads=200",
     "theta=1&theta0=179",
 ]
 CROWDED = """() => {

@@ -291,7 +291,7 @@ kind=isothermal&theta=75&surface=minimal&m=9&n=7&bend=45&moebius=1&px=-1.4&py=0.
 ?kind=isothermal&surface=rolled&m=9&n=7&bend=300&moebius=0&pz=0.3 63 4.27546958
 kind=revolution&theta=70&lock=1&m=9&n=7&radii=0.7,0.95,1.08,1.12,1.08,0.95,0.7 63 17.1879575
 kind=freeform&theta=60&theta0=45&m=5&n=4 20 0.869020242
-kind=cover&source=saddle&quads=60&direction=20.5 56 6.02313761
+kind=cover&source=saddle&quads=60&direction=20.5&trim=0 56 6.02313761
 """  # links of an earlier version, the number of faces, and the norm of V
 
 
@@ -553,6 +553,24 @@ def test_panels_to_the_edge_are_in_the_code_the_link_and_in_files(trimmed, tmp_p
         assert plot.GREY in trimmed.save(".svg", -1.0, 0.5).decode()
 
 
+@pytest.mark.parametrize("source", examples.SURFACES)
+def test_a_cover_opens_with_panels_to_its_edge_and_a_link_can_say_that_it_shall_not(source):
+    found = {}
+    for query in ("", "&trim=0", "&theta=2"):
+        choice, problems = parse(f"kind=cover&source={source}{query}")
+        found[query] = made = built(**asdict(choice))
+        assert problems == [] and not made.is_faulty and same(made.code(), made.V, made.Q)
+        assert parse(link(made.choice)) == (made.choice, [])
+    panels = [len(made.report.polygons) for made in found.values()]
+    assert panels[0] > 60 and panels[1:] == [0, 0]
+    whole, opens = found["&trim=0"].report, found[""].report
+    assert opens.covered > 0.99 > whole.covered + 0.05 and opens.quads > 0.95 * whole.quads
+    assert ["slivers" in made.message for made in found.values()] == [False, False, True]
+    texts = [plates.numbers(made.report, made.V, made.Q) for made in found.values()]
+    assert [x["faces"] for x in texts] == ["whole faces", "faces", "faces"]
+    assert [x["others"] for x in texts] == ["panels cut at the edge", "", ""]
+
+
 def test_only_a_surface_with_one_hole_can_be_a_ring_or_have_an_opening(tmp_path):
     made, asked = Session(), {}
     for source in PICKED["source"]:
@@ -569,7 +587,7 @@ def test_only_a_surface_with_one_hole_can_be_a_ring_or_have_an_opening(tmp_path)
     nets.ground(made.choice, made.surface).result(60)
     assert made.has_one_hole is True
     for openings, same_as in (("ring", None), ("fill", "fill")):
-        found = built(kind="cover", source="saddle", quads=60, openings=openings)
+        found = built(kind="cover", source="saddle", quads=60, openings=openings, trim=False)
         angles = np.radians([60, 60])
         V = design.cover(*examples.saddle_with_hole(), *angles, 60, openings=same_as).V
         assert np.array_equal(found.V, V)
@@ -587,8 +605,11 @@ def test_a_surface_from_a_file_is_covered_and_named_in_the_code(tmp_path, name):
     assert same(found.code(), found.V, found.Q)
 
 
+WHOLE = {"kind": "cover", "trim": False}
+
+
 @pytest.mark.parametrize("last", [None, 0, 1, 2, 999])
-@pytest.mark.parametrize("values", [{"kind": "freeform", "m": 6, "n": 6}, {"kind": "cover"}])
+@pytest.mark.parametrize("values", [{"kind": "freeform", "m": 6, "n": 6}, WHOLE])
 def test_a_search_begins_with_the_start_stops_after_the_step_under_way_and_keeps_the_best_net(
     values, last
 ):
@@ -698,6 +719,7 @@ def test_the_numbers_agree_with_the_judge_and_with_the_corners(values):
     medial = [(v3 + v4 - v1 - v2) / 2, (v4 + v1 - v2 - v3) / 2]
     sizes = np.linalg.norm(medial, axis=2)
     texts = plates.numbers(found.report, V, Q)
+    assert (texts.pop("faces"), texts.pop("others")) == ("faces", "")
     said = {name: float(x.replace("\u2212", "-")) for name, x in texts.items()}
     assert said["quads"] == len(Q) and said["flips"] == measure.quality(V, Q).flips
     assert (said["theta"], said["theta0"]) == (70, 55)

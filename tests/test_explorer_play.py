@@ -147,7 +147,7 @@ def test_undo_and_redo_go_through_the_choices_and_a_drag_is_one():
 
 def covered(**values):
     found = Session()
-    assert found.change(kind="cover", quads=60, **values) == []
+    assert found.change(kind="cover", quads=60, trim=False, **values) == []
     found.search(found.begin())
     return found
 
@@ -208,6 +208,7 @@ FAULTY = [
     {"kind": "plane", "map": "moebius", "px": 0.5, "py": 0.2},
     {"kind": "plane", "map": "square", "theta": 1, "theta0": 179},
     {"kind": "cover", "source": "file"},
+    {"kind": "cover", "source": "shell", "theta": 165, "theta0": 165, "quads": 100},
 ]
 
 
@@ -219,6 +220,8 @@ def test_where_there_is_no_good_net_each_change_that_is_offered_makes_one(values
     (found.search(found.begin()) if found.must_search else found.construct())
     assert found.is_faulty
     offers = remedy.remedies(found.choice)
+    if values.get("source") == "shell":  # there are whole quads
+        assert offers[0] == {"trim": False}
     assert 1 <= len(offers) <= remedy.MOST and all(offers.count(one) == 1 for one in offers)
     for change in offers:
         other = Session()

@@ -1043,6 +1043,8 @@ def test_a_net_of_a_file_is_named_and_read_again_by_its_code(tmp_path, monkeypat
     session = Session(net=(V, Q, [polygon]))
     assert session.report.polygons == (5,) and session.save(".obj").count(b"\nf ") == len(Q) + 1
     assert session.unit == "Lengths have no unit."
+    said = plates.numbers(session.report, V, Q)
+    assert (said["faces"], said["others"], said["cut"]) == ("quads", "other faces", "1")
 
 
 def test_nets_are_released_with_their_cell_and_the_oldest_ones(door, monkeypatch):

@@ -148,13 +148,14 @@ def cover(
         moved = flat is not ground.flat
         domain = overlay.Domain(flat, ground.V) if moved else ground.domain
         layer = overlay.cover(domain, theta, theta0, count, size, direction + turn, ask)
+        if optimise:  # before the edge is cut, which takes time
+            _refuse_slender(layer)
         edge = cut(domain, layer) if trim else None
         layer = edge.layer if trim else layer
     pinned = np.flatnonzero(~layer.ij.any(axis=1)) if through is not None else []
     net, done, words = layer.V, False, "not optimised"
     if optimise:
         with begin("optimise"), BLAS.limit(limits=1, user_api="blas"):  # more only wait
-            _refuse_slender(layer)
             ways = {"reference": goal, "tolerance": tolerance, "progress": progress}
             ways["fixed"] = pinned if len(pinned) else None
             net, done, words = _optimise(layer, theta, theta0, callback, ways)

@@ -139,7 +139,7 @@ class Choice:
     quads: int = _of(Range(10, 20000, 10, whole=True), 700)
     direction: float = _of(Range(-90, 90, 1, "\u00b0"), 0.0)
     openings: str = _of(OPTIONS["openings"], "ring")
-    trim: bool = _of(SWITCH, False)
+    trim: bool = _of(SWITCH, True)
     families: tuple = _of(FAMILIES, ("u", "v"))
     parallelograms: bool = _of(SWITCH, True)
     shade: str = _of(OPTIONS["shade"], "none")

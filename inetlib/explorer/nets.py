@@ -20,6 +20,7 @@ DISKS = {  # centre and radius of the disk that the grid fills, if it is not the
     "sphere": (0, 2.4),
 }
 IN_DEGREES = "theta", "theta0", "bend", "direction"  # the angles of a choice
+SLIVER = 5.0  # degrees from 0 and 180: at smaller angles no panels are cut
 PATIENCE = 0.05  # seconds between two questions whether to go on waiting for a surface
 _makers = ThreadPoolExecutor(2, "surfaces")
 _grounds: dict[tuple, tuple] = {}  # {(what surface, whether filled): (it, its `Future`)}
@@ -37,6 +38,7 @@ class Recipe(NamedTuple):
     take: str = "V, Q = {net}"
 
 
+WHOLE = "; whole quads only: at such angles panels at the edge would be slivers"
 SAMPLED = "sampled from a smooth net: faces of half the size are off by a quarter as much"
 GRID = "z = conformal.sheared_grid({theta}, {theta0}, {m}, {n}, {origin}, {edge})"
 ROLLED = "z = developable.rolled_grid({theta}, {theta0}, {m}, {n}, {curvature}, {origin}, {edge})"
@@ -88,11 +90,17 @@ def _recipe(choice):
         example = f"surface = examples.{examples.SURFACES[choice.source].__name__}()"
         recipe = recipe._replace(rooms="design, examples", start=example)
     if choice.kind == "cover":
-        more = ', openings="fill"' * (choice.openings == "fill") + ", trim=True" * choice.trim
-        take = "V, Q, _, polygons = {net}[:4]" if choice.trim else recipe.take
+        more = ', openings="fill"' * (choice.openings == "fill") + ", trim=True" * trims(choice)
+        take = "V, Q, _, polygons = {net}[:4]" if trims(choice) else recipe.take
+        words = recipe.message + WHOLE * (choice.trim and not trims(choice))
         net = recipe.net.replace("{callback}", more + "{callback}")
-        recipe = recipe._replace(net=net, take=take)
+        recipe = recipe._replace(net=net, take=take, message=words)
     return recipe
+
+
+def trims(choice: Choice) -> bool:
+    """Whether panels fill the edge of a cover, as they shall where they are no slivers."""
+    return choice.trim and all(SLIVER <= x <= 180 - SLIVER for x in (choice.theta, choice.theta0))
 
 
 def _plane(name):

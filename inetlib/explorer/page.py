@@ -176,7 +176,7 @@ def _numbers():
         html.Span("\u03bb = |d\u2082|/|d\u2081| = {{ face.lam || numbers.lam }}")
         html.Span("\u03bc = |m\u2081\u2083|/|m\u2082\u2084| = {{ face.mu || numbers.mu }}")
     widgets.face()
-    html.H2("Over all {{ numbers.quads }} faces")
+    html.H2("Over all {{ numbers.quads }} {{ numbers.faces }}")
     with html.Table(classes="ex-numbers"):
         with html.Tr():
             for words in ("", "mean", "off at most"):
@@ -186,11 +186,9 @@ def _numbers():
                 html.Td(words)
                 html.Td(f"{{{{ numbers.mean_{name} }}}}\u00b0", classes=f"out-mean-{name}")
                 html.Td(f"{{{{ numbers.{name}_off }}}}\u00b0", classes=f"out-off-{name}")
-        with html.Tr(v_show="numbers.cut && numbers.cut != '0'"):
-            html.Td("panels")
-            html.Td(
-                "{{ numbers.quads }} whole, {{ numbers.cut }} cut", colspan=2, classes="out-cut"
-            )
+        with html.Tr(v_show="numbers.others"):
+            html.Td("{{ numbers.others }}")
+            html.Td("{{ numbers.cut }}", colspan=2, classes="out-cut")
         with html.Tr():
             html.Td("flipped faces")
             html.Td("{{ numbers.flips }}", colspan=2, classes="out-flips")

@@ -115,7 +115,7 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
     theta, theta0 = about.wanted["theta"], about.wanted["theta0"]
     lam, mu = ratios(theta, theta0)
     medial = np.linalg.norm(measure.vectors(V, Q)[2:], axis=2)
-    over = {} if about.covered is None else _covering(about)
+    over = _named(about) | ({} if about.covered is None else _covering(about))
     quads, cut = (f"{x:,}".replace(",", "\u2009") for x in (about.quads, len(about.polygons)))
     return over | {
         "quads": quads,
@@ -133,6 +133,15 @@ def numbers(about: Report, V: np.ndarray, Q: np.ndarray) -> dict[str, str]:
         "theta": f"{np.degrees(theta):.10g}",
         "theta0": f"{np.degrees(theta0):.10g}",
     }
+
+
+def _named(about):
+    """What the faces are called that the numbers are of, and the others, where there are any."""
+    if not about.polygons:
+        return {"faces": "faces", "others": ""}
+    if about.cut_smallest is None:
+        return {"faces": "quads", "others": "other faces"}
+    return {"faces": "whole faces", "others": "panels cut at the edge"}
 
 
 def _covering(about):

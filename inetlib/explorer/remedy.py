@@ -27,6 +27,7 @@ NAMES = {
     "theta0": "\u03b8\u2080",
     "bend": "bending",
     "moebius": "M\u00f6bius image",
+    "trim": "panels to the edge",
 }
 NAMES |= choices.WORDS | {"source": "surface", "openings": "hole"}
 
@@ -82,6 +83,8 @@ def _ways(choice, surface) -> Iterator[Callable]:
     if choice.kind == "cover" and choice.source == "file" and surface is None:
         yield lambda works: next(filter(works, [{"source": "roof"}]), None)
         return
+    if choice.kind == "cover" and nets.trims(choice):
+        yield lambda works: next(filter(works, [{"trim": False}]), None)
     angles = (
         [("theta", "theta0")] if choice.lock else [("theta", "theta0"), ("theta",), ("theta0",)]
     )

@@ -111,7 +111,7 @@ PRESETS = {
     "dome": Preset(
         "Dome",
         "panels up to the edges of five openings",
-        "kind=cover&source=five_skylights&trim=1&quads=500",
+        "kind=cover&source=five_skylights&quads=500",
     ),
 }
 POLE = "the point that goes to infinity"
