@@ -1,5 +1,6 @@
 """What one does with a net in the explorer, without its page: shading, undo, touching, remedies."""
 
+import io as streams
 import re
 import time
 from dataclasses import replace
@@ -8,8 +9,9 @@ import igl
 import numpy as np
 import pytest
 import pyvista
+from matplotlib.image import imread
 
-from inetlib import design, examples, io, measure, mesh
+from inetlib import design, examples, io, measure, mesh, plot
 from inetlib.explorer import behind, look, plates, probe, remedy
 from inetlib.explorer.choices import Choice
 from inetlib.explorer.history import MOST, History
@@ -201,6 +203,50 @@ def test_the_surface_and_the_ghost_are_sent_when_they_change_and_leave_nothing()
     assert show(None, None) and shown.pale.prop.opacity == 1  # else all is drawn several times
     assert shown.surface.n_points == shown.ghost.n_points == 1
     plotter.close()
+
+
+@pytest.mark.parametrize("form", [".svg", ".png"])
+def test_a_saved_picture_has_the_surface_below_the_net_and_the_ghost(monkeypatch, form):
+    monkeypatch.setattr(look, "PIXELS", 200)
+    net, other = covered(), built(m=4, n=3)
+    aside = np.array([3 * np.ptp(net.V[:, 0]), 0, 0])
+    ghost = other.V + aside, other.Q
+
+    def saved(*more, **shown):
+        assert net.change(**shown) == []
+        return net.save(form, -1.0, 0.7, *more)
+
+    plain, both = saved(target=False), saved(ghost, target=True)
+    assert both == saved(ghost) and len({plain, saved(), saved(ghost, target=False), both}) == 4
+    if form == ".svg":  # the ghost as vectors, all else in one picture
+        texts = plain.decode(), saved().decode(), both.decode()
+        assert [plot.GREY in text for text in texts] == [False, False, True]
+        assert [text.count("<image") for text in texts] == [1, 1, 1]
+        return
+    one, below, all_of_it = (
+        np.round(255 * imread(streams.BytesIO(data))[..., :3]) for data in (plain, saved(), both)
+    )
+    pale = (below < 253).any(axis=-1) & (below.min(axis=-1) > 195)  # 0.3 of it, over white
+    assert 0.05 < pale.mean() < 0.5 and (one.min(axis=-1) > 195).mean() > 0.5
+    V, cam = examples.wavy_roof()[0], plot.camera(-1.0, 0.7)
+    wide, narrow = (np.ptp(cam(W)[0], axis=0) for W in (V, net.V))
+    for picture, size in ((below, wide), (one, narrow)):  # what is drawn fills the picture
+        rows, columns = (np.ptp(np.flatnonzero((picture < 253).any(axis=(k, 2)))) for k in (1, 0))
+        assert columns / rows == pytest.approx(size[0] / size[1], rel=0.06)
+    right = all_of_it[:, -all_of_it.shape[1] // 3 :]  # where the ghost is alone
+    assert (right < 200).any() and np.ptp(right, axis=-1).max() < 20
+    assert net.save(".obj", ghost=ghost) == net.save(".obj")
+
+
+def test_a_surface_that_the_net_is_not_on_is_not_shown_with_it():
+    net = covered()
+    assert net.beneath is net.target is not None
+    net.change(source="saddle")
+    net.search(net.begin())
+    net.change(source="roof")  # whose net is not there yet
+    assert net.target is not None and net.beneath is None
+    net.change(source="saddle", target=False)
+    assert net.target is not None and net.beneath is None
 
 
 FAULTY = [

@@ -439,6 +439,9 @@ async def test_saving_gives_the_bytes_of_the_session_seen_as_on_the_page_or_a_se
     for suffix in (".obj", ".off", ".svg", ".png"):
         assert bytes(app.save(suffix, SIDE)) == app.session.save(suffix, *sight)
         assert bytes(app.save(suffix, above)) == app.session.save(suffix)
+    app.play.keep()
+    found, without = bytes(app.save(".png", SIDE)), app.session.save(".png", *sight)
+    assert found == app.session.save(".png", *sight, ghost=app.play.ghost) != without
     assert app.state.alert == ""
     for suffix, camera in BAD_SAVES:
         app.state.alert = ""

@@ -140,7 +140,7 @@ class App:
         try:
             x, y, z = (a - b for a, b in zip(camera["position"], camera["focalPoint"], strict=True))
             sight = (atan2(y, x), atan2(z, hypot(x, y))) if hypot(x, y) > 1e-6 * abs(z) else ()
-            data = self.session.save(suffix, *sight)
+            data = self.session.save(suffix, *sight, ghost=self.play.ghost)
         except (ValueError, ImportError, KeyError, TypeError) as error:
             self.state.alert = f"not saved: {error}"
             return None

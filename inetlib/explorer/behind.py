@@ -8,7 +8,6 @@ from .. import mesh, view
 from . import look
 
 MOST = 50_000  # triangles of the surface that a browser is given
-OPACITY = 0.3  # of the surface
 BINS = 100  # a side of the bounding box, for larger surfaces
 
 
@@ -58,7 +57,7 @@ class Behind:
         self.clear()
         self._known = known
         # Whatever is translucent makes a browser draw all in several passes.
-        self.pale.prop.opacity = 1.0 if surface is None else OPACITY
+        self.pale.prop.opacity = 1.0 if surface is None else look.OPACITY
         self.pale.prop.color, self.lines.prop.color = palette.cut, palette.families["rim"]
         if surface is not None:
             self.surface.points = np.asarray(surface.points - origin, np.float32)

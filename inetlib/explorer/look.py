@@ -15,6 +15,7 @@ from ..design import report
 DECADES = -3, 1  # powers of ten of a degree: what the shading by deviation tells apart
 STEPS = 5  # of the other scales
 EQUAL = 1e-9  # of the scale: sizes, or planarities, that differ by less are equal
+OPACITY = 0.3  # of the surface below a net
 PIXELS = 1200  # of the longer side of a net in a saved picture
 
 
@@ -186,22 +187,27 @@ def fills(layout: Layout, palette: Palette, shade: np.ndarray | None = None) -> 
     return rgb
 
 
-def picture(V, Q, choice, shade, camera, form, cover=None) -> bytes:
+def picture(V, Q, choice, shade, camera, form, cover=None, surface=None, ghost=None) -> bytes:
     """The net as the bytes of a picture, form "svg" or "png", drawn without OpenGL.
 
     choice: what is shown of it; shade: RGB bytes a quad (f, 3), or None; camera: `plot.camera`;
-    cover: as of `layout`."""
+    cover: as of `layout`; surface, ghost: (V, triangles), (V, Q) of what is shown with it."""
     plan = layout(Q, len(V), choice.families, choice.parallelograms, cover)
     triangles = np.concatenate([plan.triangles, plan.cut])
     W, faces = points(V, plan), np.concatenate([plan.quads, triangles[:, [0, 1, 2, 2]]])
     fill = fills(plan, LIGHT, shade) / 255
     width, named = 0.6 * line_width(len(Q)), plan.lines.items()
     lines = [(W[pair], LIGHT.families[name], width) for name, pairs in named for pair in pairs]
-    return drawn([(W, faces, fill)], lines, camera, form)
+    if ghost is not None:
+        pairs = np.concatenate(list(layout(ghost[1], len(ghost[0]), ("u", "v")).lines.values()))
+        lines += [(ends, LIGHT.families["rim"], 0.6) for ends in ghost[0][pairs]]
+    return drawn([(W, faces, fill)], lines, camera, form, surface)
 
 
-def drawn(layers, lines, camera, form) -> bytes:
-    """Surfaces and curves on them, as of `plot.scene`, as the bytes of a picture."""
+def drawn(layers, lines, camera, form, pale=None) -> bytes:
+    """Surfaces and curves on them, as of `plot.scene`, as the bytes of a picture.
+
+    pale: (V, F) of a surface behind them, or None."""
     file, metadata = io.BytesIO(), {"Date": None} if form == "svg" else {"Software": None}
     with matplotlib.rc_context():
         plot.use_style()
@@ -209,6 +215,11 @@ def drawn(layers, lines, camera, form) -> bytes:
         figure = Figure(figsize=(8, 6), layout="none")
         ax = figure.add_axes((0.02, 0.02, 0.96, 0.96), aspect="equal")
         ax.set_axis_off()
+        if pale is not None:
+            seen = plot.scene(ax, camera, [(*pale, LIGHT.cut)], (), PIXELS)
+            ax.images[0].set_data(seen.image * [1, 1, 1, OPACITY])
         plot.scene(ax, camera, layers, lines, PIXELS)
+        ax.margins(0)  # of all of it
+        ax.autoscale_view()
         figure.savefig(file, format=form, dpi=200, metadata=metadata, facecolor="white")
     return file.getvalue()

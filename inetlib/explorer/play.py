@@ -124,13 +124,7 @@ class Play:
         """Put the surface that is covered, and the ghost, into the scene."""
         app, palette = self.app, look.DARK if self.app.state.dark else look.LIGHT
         app.scene.plotter.set_background(palette.background)
-        app.scene.behind.show(self._surface(), self.ghost, app.scene.origin, palette)
-
-    def _surface(self):
-        session = self.app.session
-        one, two = ((x.kind, x.source) for x in (session.choice, session.shown))
-        old = session.V is not None and one != two  # the net before, on something else
-        return session.target if session.choice.target and not old else None
+        app.scene.behind.show(app.session.beneath, self.ghost, app.scene.origin, palette)
 
     def alone(self):
         """Where there is no net yet, show the surface."""
@@ -143,7 +137,7 @@ class Play:
 
     def extent(self):
         """The points that shall be seen: of the net, and of the surface below it."""
-        surface, V = self._surface(), self.app.session.V
+        surface, V = self.app.session.beneath, self.app.session.V
         return V if surface is None else np.concatenate([V, surface.points])
 
     def touch(self, how: str, camera: dict | None = None, x: float = 0, y: float = 0):

@@ -190,6 +190,13 @@ class Session:
         """The surface that the choice covers, as `behind.few` has it; None before a search."""
         return self._targets.get(self.choice.kind == "cover" and self.choice.source)
 
+    @property
+    def beneath(self):
+        """The `target` where it is shown, and the net is on it; else None."""
+        one, two = ((x.kind, x.source) for x in (self.choice, self.shown))
+        old = self.V is not None and one != two  # the net before, on something else
+        return self.target if self.choice.target and not old else None
+
     def _see(self, choice):
         if choice.kind == "cover" and choice.source not in self._targets:
             with suppress(ValueError):  # the search says what is wrong
@@ -218,18 +225,19 @@ class Session:
             return "# this net came from Python: V, Q"
         return nets.code(self.choice, self.path or "surface.obj")
 
-    def save(self, suffix, azimuth=-np.pi / 2, elevation=np.pi / 2):
+    def save(self, suffix, azimuth=-np.pi / 2, elevation=np.pi / 2, ghost=None):
         """The net as the bytes of a file: `.svg` or `.png`, a picture, else a mesh of `io`.
 
-        azimuth, elevation: of the viewer, radians, for pictures.  ValueError for other suffixes
-        and where there is no net."""
+        azimuth, elevation: of the viewer, radians; ghost: V, Q of another net that is shown, or
+        None: for pictures.  ValueError for other suffixes and where there is no net."""
         if suffix not in SAVED:
             raise ValueError(f"{suffix}: one of {' '.join(SAVED)} is wanted")
         if self.V is None:
             raise ValueError("there is no net to save")
         if suffix in (".svg", ".png"):
-            fill, camera = self.shading()[0], plot.camera(azimuth, elevation)
-            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:], self.cover)
+            fill, camera, below = self.shading()[0], plot.camera(azimuth, elevation), self.beneath
+            more = self.cover, below and (below.points, below.regular_faces), ghost
+            return look.picture(self.V, self.Q, self.choice, fill, camera, suffix[1:], *more)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"net{suffix}"
             polygons, edges = (self.cover.polygons, self.cover.edges) if self.cover else ((), None)
