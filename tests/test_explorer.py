@@ -627,7 +627,7 @@ def test_a_search_begins_with_the_start_stops_after_the_step_under_way_and_keeps
         made.stop()
     made.search(run, seen)
     if last is None and made.choice.kind == "cover":  # there is no net yet
-        assert not way and made.V is None and "stopped" in made.problem
+        assert not way and made.V is None and "stopped" in made.problem and made.can_search
         return
     whole = last == 999
     assert len(way) == (0 if last is None else made.steps + 1 if whole else last + 1)
@@ -699,6 +699,7 @@ def test_what_cannot_be_found_becomes_a_problem_and_the_former_net_stays(former)
     made.search(made.begin())
     assert made.problem.startswith("no net: ") and "file" in made.problem and made.run is None
     assert made.V is V and made.message == message and made.report is said
+    assert made.must_search and not made.can_search  # it would find the same
     if not former:
         with pytest.raises(ValueError, match="no net"):
             made.save(".obj")

@@ -314,7 +314,7 @@ async def test_stop_is_heard_before_the_first_step(app, app_module, quick, monke
     await until(lambda: app.state.searching)
     app.stop()
     await until(lambda: not app.state.searching)
-    assert not app.session.message.startswith("converged")
+    assert not app.session.message.startswith("converged") and app.state.can_search
 
 
 async def test_a_change_ends_the_search_under_way_and_its_net_is_forgotten(app, app_module, gate):

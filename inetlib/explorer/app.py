@@ -133,7 +133,7 @@ class App:
         self.state.progress = "stopping \u2026"
         if self.session.run is None and self._search is not None:  # it has not begun
             self._search.cancel()
-            self.state.searching = False
+            self.state.update({"searching": False, "can_search": True})
 
     def save(self, suffix, camera):
         """The bytes of a file, for the browser to keep; None, and a message, if there is none."""
@@ -253,7 +253,7 @@ class App:
         """What there is to say of the net: sentences, numbers and drawings."""
         session, state = self.session, self.state
         state.problem, state.message = session.problem, session.message
-        state.can_search = session.must_search
+        state.can_search = session.can_search
         self._plates()
         self.play.mend()
         if session.V is None:

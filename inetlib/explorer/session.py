@@ -95,6 +95,11 @@ class Session:
         return self.choice.kind in nets.FOUND and not self.given
 
     @property
+    def can_search(self):
+        """Whether a search can be run again: not where one has found that there is no net."""
+        return self.must_search and (not self.problem or "stopped" in self.problem)
+
+    @property
     def is_faulty(self):
         """Whether there is no net of the choice, or one that is not as it was asked for."""
         stopped = self.run is not None or self.given or "stopped" in self.message
