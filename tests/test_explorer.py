@@ -930,6 +930,27 @@ def test_every_cell_has_the_colour_of_the_face_it_is_cut_from_and_all_fill_it_on
     assert np.all(area > 0) and area.sum() == pytest.approx(whole.sum())
 
 
+@pytest.mark.parametrize("angles", [(60, 60), (75, 50), (30, 150), (120, 20), (2, 60), (90, 179)])
+def test_the_curves_of_slender_quads_are_drawn_like_those_of_more_quads(angles):
+    made = built(map="identity", m=4, n=4, theta=angles[0], theta0=angles[1])
+    x, y, _ = made.V[made.Q[0]].T
+    area = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+    middles = (made.V[made.Q[0]] + np.roll(made.V[made.Q[0]], -1, axis=0)) / 2
+    longest = max(np.linalg.norm(middles[k] - middles[k + 2]) for k in (0, 1))
+    narrow = (area / longest) ** 2 / area  # beside a square of the same area, squared
+    assert look.crowd(100, *angles) == pytest.approx(100 * max(1, 0.5 / narrow))
+    if angles in ((60, 60), (75, 50)):
+        assert look.crowd(100, *angles) == 100  # nothing changes there
+    if angles in ((2, 60), (90, 179)):
+        width, many = (look.line_width(x) for x in (600, look.crowd(600, *angles)))
+        assert many < width
+    pens = [
+        float(re.search(rb"stroke-width: ([\d.]+)", built(theta=theta).save(".svg"))[1])
+        for theta in (60, 178)
+    ]
+    assert pens[1] < pens[0] / 2  # in a saved picture, too
+
+
 def test_shades_darken_with_the_deviation_between_the_ends_of_the_scale():
     brightness = look.shades(np.logspace(-12, 2, 200)).astype(int).sum(axis=1)
     assert np.all(np.diff(brightness) <= 0)

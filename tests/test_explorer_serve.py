@@ -480,6 +480,12 @@ def test_the_scene_has_the_cells_curves_and_colours_of_the_layout(serve):
     assert len(cells) > len(cover.Q) and scene.curves.n_cells == sum(map(len, plan.lines.values()))
     scene.show(*cover[:2], plain)
     assert scene.faces.n_cells == len(cover.Q)  # on the way they are not there
+    looks = []
+    for theta in (60, 0.1, 60):  # the same quads, and slender ones
+        scene.show(V, Q, Choice(parallelograms=False, theta=theta), False, None)
+        light = scene.curves.cell_data["rgb"].mean()
+        looks.append((scene.actor.prop.line_width, -light))
+    assert looks[0] == looks[2] > looks[1] and looks[0][1] > looks[1][1]
     shade = np.arange(3 * len(Q), dtype=np.uint8).reshape(-1, 3)
     scene.show(V, Q, plain, False, shade)
     assert np.array_equal(scene.faces.cell_data["rgb"], shade)

@@ -9,10 +9,11 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from .. import design, measure, plot, repair
+from .. import design, measure, parallelogram, plot, repair
 from ..design import report
 
 DECADES = -3, 1  # powers of ten of a degree: what the shading by deviation tells apart
+SLIM = 0.5  # quads of less height have thinner curves, see `crowd`
 STEPS = 5  # of the other scales
 EQUAL = 1e-9  # of the scale: sizes, or planarities, that differ by less are equal
 OPACITY = 0.3  # of the surface below a net
@@ -91,12 +92,20 @@ def _graded(values, low, least, unit):
     return _tones((values - low) / reach), _legend(_tones(part), words)
 
 
-def line_width(quads: int) -> float:
-    """The width of the curves in pixels: thinner where there are more quads."""
+def crowd(quads: int, theta: float, theta0: float) -> float:
+    """The number of quads that are no slimmer than `SLIM`, with curves as close as those of these.
+
+    theta, theta0: of the quads, degrees.  Slim is the height over the longer medial line / it."""
+    mu = parallelogram.ratios(*np.radians([theta, theta0]))[1]
+    return quads * max(1.0, SLIM / (np.sin(np.radians(theta0)) * min(mu, 1 / mu)))
+
+
+def line_width(quads: float) -> float:
+    """The width of the curves in pixels: thinner where there are more quads, or a `crowd`."""
     return 3 if quads < 200 else 2 if quads < 2000 else 1 if quads < 6000 else 0.5
 
 
-def ink(colour: str, face: str, quads: int) -> np.ndarray:
+def ink(colour: str, face: str, quads: float) -> np.ndarray:
     """The RGB of a curve, of parts of 1: fainter where so many quads run together."""
     part = 0.0 if quads < 6000 else 0.45
     return (1 - part) * np.array(to_rgb(colour)) + part * np.array(to_rgb(face))
@@ -196,7 +205,8 @@ def picture(V, Q, choice, shade, camera, form, cover=None, surface=None, ghost=N
     triangles = np.concatenate([plan.triangles, plan.cut])
     W, faces = points(V, plan), np.concatenate([plan.quads, triangles[:, [0, 1, 2, 2]]])
     fill = fills(plan, LIGHT, shade) / 255
-    width, named = 0.6 * line_width(len(Q)), plan.lines.items()
+    many, named = crowd(len(Q), choice.theta, choice.theta0), plan.lines.items()
+    width = 0.6 * line_width(many)
     lines = [(W[pair], LIGHT.families[name], width) for name, pairs in named for pair in pairs]
     if ghost is not None:
         pairs = np.concatenate(list(layout(ghost[1], len(ghost[0]), ("u", "v")).lines.values()))

@@ -50,6 +50,8 @@ class Scene:
         """Put a net into the scene; shade: RGB bytes a quad, (f, 3), or None; cover: of `look`."""
         palette, cut = look.DARK if dark else look.LIGHT, cover and [*map(bytes, cover.polygons)]
         known = choice.families, choice.parallelograms, dark, shade is None, Q.tobytes(), cut
+        many = look.crowd(len(Q), choice.theta, choice.theta0)
+        known += (look.line_width(many),)
         new, self._known = known != self._known, known
         if new:
             self._layout = look.layout(Q, len(V), choice.families, choice.parallelograms, cover)
@@ -64,11 +66,11 @@ class Scene:
             cells = plan.quads, plan.triangles, plan.cut
             lines = plan.lines or {"none": np.zeros((1, 2), dtype=np.int64)}
             found = [palette.families.get(name, palette.face) for name in lines]
-            colours = [look.ink(colour, palette.face, len(Q)) for colour in found]
+            colours = [look.ink(colour, palette.face, many) for colour in found]
             rgb = np.repeat(np.round(255 * np.array(colours)), [*map(len, lines.values())], axis=0)
             pairs = _counted(np.concatenate(list(lines.values())))
             self._cells(np.concatenate([*map(_counted, cells)]), pairs, fills, rgb)
-            self.actor.prop.line_width = look.line_width(len(Q))
+            self.actor.prop.line_width = look.line_width(many)
             self.plotter.set_background(palette.background)
         elif shade is not None:
             self.faces.cell_data["rgb"] = fills
