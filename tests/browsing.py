@@ -6,8 +6,10 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from PIL import Image
 
+from inetlib import measure
 from inetlib.explorer import choices
 
 OPTIONS = [
@@ -131,3 +133,17 @@ def is_drawn(picture):
     """Whether there is a net before a plain background."""
     share = (np.abs(picture - picture[-5, 5]).sum(axis=-1) > 30).mean()
     return 0.03 < share < 0.97 and len(np.unique(picture.reshape(-1, 3), axis=0)) > 50
+
+
+def judge(reader):
+    """The page's numbers are those of `measure` for the page's own code, digit by digit."""
+    V, Q = reader.net()
+    for shown, found in zip(reader.angles(), measure.angles(V, Q), strict=True):
+        assert shown == f"{np.degrees(found.mean()):.6f}"
+    assert reader.text(".out-flips") == str(measure.quality(V, Q).flips)
+    choice = reader.choice()
+    for name, found in zip(("theta", "theta0"), measure.angles(V, Q), strict=True):
+        off = np.abs(np.degrees(found) - getattr(choice, name)).max()
+        shown = float(reader.text(f".out-off-{name}").rstrip("\u00b0").replace("\u2212", "-"))
+        assert shown == pytest.approx(off, rel=0.06, abs=2e-12)  # two digits, and rounding
+    return V, Q

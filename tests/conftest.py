@@ -1,6 +1,9 @@
 """Drawing without a screen, and properties that try the same examples on every machine."""
 
+import functools
 import inspect
+import os
+import signal
 import sys
 from pathlib import Path
 
@@ -10,6 +13,7 @@ from hypothesis import settings
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tools"))
 
+pytest.register_assert_rewrite("browsing")
 matplotlib.use("Agg")
 settings.register_profile("still", derandomize=True, deadline=None, database=None, max_examples=60)
 settings.load_profile("still")
@@ -60,6 +64,47 @@ def chromium():
         found = driver.chromium.launch(executable_path=path, args=OPTIONS)
         yield found
         found.close()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory):
+    """The address of an explorer that runs for a whole file of tests."""
+    from browsing import start
+
+    folder = tmp_path_factory.mktemp("empty")
+    environment = os.environ | {"TMPDIR": str(folder)}
+    process, found = start(folder=folder, environment=environment)
+    yield found
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 0
+    process.stdout.close()
+    assert list(folder.iterdir()) == []  # nothing was left on the disk
+
+
+@pytest.fixture(scope="module")
+def contexts(chromium):
+    """contexts(options) -> a browser context, the same for the same options: its cache is warm."""
+    return functools.cache(chromium.new_context)
+
+
+@pytest.fixture
+def tab(contexts, address):
+    """tab(query, ...) -> a `Reader`; its page must not have thrown an error."""
+    from browsing import Reader
+
+    opened = []
+
+    def open_tab(query="", width=1000, height=640, **options):
+        page = contexts(**options).new_page()
+        page.set_viewport_size({"width": width, "height": height})
+        opened.append(Reader(page, address, query))
+        return opened[-1]
+
+    yield open_tab
+    for reader in opened:
+        errors = list(reader.errors)
+        reader.page.close()
+        assert errors == []
 
 
 @pytest.fixture(scope="session")
