@@ -809,6 +809,24 @@ async def test_a_page_that_says_hello_is_answered_and_nobody_else(house):
         assert wrong == {"code": -32001, "message": "Exception raised"}
 
 
+async def test_an_answer_to_a_tab_that_is_just_closing_is_dropped_in_silence(
+    house, monkeypatch, caplog
+):
+    _, client = house
+    tried = []
+
+    async def gone(*words):
+        tried.append(words)
+        raise ConnectionResetError("Cannot write to closing transport")
+
+    monkeypatch.setattr("aiohttp.web.WebSocketResponse.send_bytes", gone)
+    async with client.ws_connect("ws") as socket:
+        await socket.send_bytes(packed("system:c0:0", "wslink.hello", {"secret": "wslink-secret"}))
+        await until(lambda: tried)
+        await asyncio.sleep(0.05)
+    assert "Traceback" not in caplog.text
+
+
 async def test_of_many_moves_of_a_slider_only_the_latest_are_computed(house):
     door, client = house
     async with client.ws_connect("ws") as socket:

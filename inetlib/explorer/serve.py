@@ -164,8 +164,9 @@ async def _talk(server, socket):
     connection = await endpoint.connect()
 
     async def forward(binary, content):
-        if not socket.closed:
-            await (socket.send_bytes if binary else socket.send_str)(content)
+        with suppress(ConnectionResetError):  # the tab may just be closing
+            if not socket.closed:
+                await (socket.send_bytes if binary else socket.send_str)(content)
 
     connection.on_message(forward)
     try:
