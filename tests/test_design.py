@@ -514,6 +514,28 @@ def test_a_stage_that_is_refused_is_the_last_one(last):
     assert told.count(last) == 1
 
 
+@pytest.mark.parametrize("last", [1, 2, 3])
+def test_the_cutting_of_panels_can_be_stopped_between_its_parts(last):
+    known, told = design.ready(*examples.wavy_roof(8)), []
+
+    def covered(most, trim=True):
+        told.clear()
+
+        def stage(name):
+            told.append(name)
+            return told.count("grid") < most
+
+        ways = {"trim": trim, "known": known, "optimise": False, "stage": stage}
+        design.cover(None, None, *np.radians([60, 60]), 30, **ways)
+        return told.count("grid")
+
+    before, after = covered(np.inf, trim=False), covered(np.inf)
+    assert after == before + 3
+    with pytest.raises(design.Stopped, match=design.STAGES["grid"]):
+        covered(before + last)
+    assert told == ["grid"] * (before + last)
+
+
 SIXTY = (60, 60), (75, 50)
 STEEP = (1, 1), (179, 179), (1, 179), (90, 1), (90, 179)
 

@@ -150,7 +150,7 @@ def cover(
         layer = overlay.cover(domain, theta, theta0, count, size, direction + turn, ask)
         if optimise:  # before the edge is cut, which takes time
             _refuse_slender(layer)
-        edge = cut(domain, layer) if trim else None
+        edge = cut(domain, layer, ask) if trim else None
         layer = edge.layer if trim else layer
     pinned = np.flatnonzero(~layer.ij.any(axis=1)) if through is not None else []
     net, done, words = layer.V, False, "not optimised"

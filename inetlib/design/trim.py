@@ -3,6 +3,7 @@
 The curves of the grid are cut at the boundary of the flattened surface; there the corners of
 the panels lie on the surface's own boundary edges, elsewhere on the surface."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -34,12 +35,15 @@ class Trimmed(NamedTuple):
         return float(self.areas.min(initial=cell) / cell)
 
 
-def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
+def trim(domain: overlay.Domain, layer: overlay.Layer, ask: Callable = lambda: None) -> Trimmed:
     """The `Trimmed` layer: whole quads and panels leave no gap, and overlap nowhere.
 
-    ValueError where the boundary of the flattened surface crosses itself."""
+    ask() is called between the parts of the work.  ValueError where the boundary of the
+    flattened surface crosses itself."""
     found = regions(domain, layer)
+    ask()
     layer, faces, gone = cut.merged(found)
+    ask()
     count = 1 + max(int(layer.Q.max()), *(int(face.ring.max()) for face in faces), 0)
     place = np.zeros(count, dtype=complex)
     for face in faces:
@@ -51,6 +55,7 @@ def trim(domain: overlay.Domain, layer: overlay.Layer) -> Trimmed:
     for side in gone:  # where curves end at the boundary inside a panel, it gets a corner, too
         turn[side.ring] = np.maximum(np.abs(turn[side.ring]), CORNER * (1 + ON))
     parts = cut.cornered(faces, layer.Q, turn, edge)
+    ask()
     rings = [face.ring[corners] for face, corners in parts]
     used = np.unique(np.concatenate([np.zeros(0, int), *rings]))
     extra = np.setdiff1d(used, layer.Q)
