@@ -24,9 +24,9 @@ OPTIONS = [
 PATIENCE = 30_000  # milliseconds: a busy machine is no failure
 
 
-def start(*words, folder, environment):
-    """(process, address) of `python -m inetlib.explorer --port 0 ...`."""
-    command = [sys.executable, "-m", "inetlib.explorer", "--port", "0", *map(str, words)]
+def start(*words, folder, environment, program=("-m", "inetlib.explorer")):
+    """(process, address) of `python -m inetlib.explorer --port 0 ...`, or of another program."""
+    command = [sys.executable, *program, "--port", "0", *map(str, words)]
     process = subprocess.Popen(
         command, stdout=subprocess.PIPE, text=True, cwd=folder, env=environment
     )

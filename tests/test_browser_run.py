@@ -1,9 +1,17 @@
 """What takes long in the explorer, in a real browser: shown, stopped, timed and forgotten."""
 
+import json
+import os
+import signal
 import statistics
+import time
+from contextlib import contextmanager
 
 import pytest
-from browsing import judge
+from browsing import Reader, judge, start
+
+from inetlib import examples, io
+from inetlib.design import STAGES
 
 pytestmark = pytest.mark.browser
 
@@ -71,3 +79,215 @@ def test_from_slider_to_picture(tab, side, capsys):
     words = f"slider to picture, {side * side} quads, all curves: median {middle:.0f} ms"
     with capsys.disabled():  # printed, not asserted: this machine may be busy
         print(f"\n{words} of {len(times)} moves ({low:.0f} to {high:.0f})")
+
+
+COUNTED = """
+import gc, json, os, signal, sys, threading
+from inetlib.explorer.app import App
+from inetlib.explorer.session import Session
+from inetlib.start import main
+
+search, under_way, counts = Session.search, set(), {"searches": 0, "at_once": 0}
+
+def counted(session, run, *args):
+    under_way.add(id(run))
+    counts["searches"] += 1
+    counts["at_once"] = max(counts["at_once"], len(under_way))
+    try:
+        search(session, run, *args)
+    finally:
+        under_way.remove(id(run))
+
+def tell(*_):
+    names = [thread.name.split("_")[0] for thread in threading.enumerate()]
+    counts["workers"] = names.count("search")
+    counts["threads"] = len(names) - names.count("asyncio")  # these read files: a few at most
+    counts["apps"] = sum(type(x) is App for x in gc.get_objects())
+    with open("/proc/self/statm") as file:
+        counts["mb"] = int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") >> 20
+    print(json.dumps(counts), flush=True)
+
+Session.search = counted
+signal.signal(signal.SIGUSR1, tell)
+sys.exit(main(["explore", *sys.argv[1:]]))
+"""
+
+
+@contextmanager
+def counting(*words, folder):
+    """(address, counts): an explorer that says on SIGUSR1 what it has; counts() asks it."""
+    environment, program = os.environ.copy(), ("-c", COUNTED)
+    process, address = start(*words, folder=folder, environment=environment, program=program)
+
+    def counts():
+        process.send_signal(signal.SIGUSR1)
+        return json.loads(process.stdout.readline())
+
+    try:
+        yield address, counts
+    finally:
+        process.send_signal(signal.SIGINT)
+        code = process.wait(20)
+        process.stdout.close()
+    assert code == 0
+
+
+CAUGHT = """([begin, words, values]) => new Promise((resolve) => {
+  // Change the page's state to begin.  When it shows these words, press Stop or change values;
+  // milliseconds until nothing is searched, or the next search has begun.  0: not seen in time.
+  const status = document.querySelector('.ex-status');
+  let acted = 0, begun = false, next = false, last = performance.now();
+  const end = (time) => {
+    observer.disconnect();
+    clearInterval(timer);
+    resolve(time);
+  };
+  const look = () => {
+    const shown = status.querySelector('.out-progress')?.innerText ?? '';
+    const now = performance.now(), first = shown.startsWith('preparing');
+    if (shown) last = now;
+    begun ||= first;
+    if (begun && !acted && shown.startsWith(words)) {
+      acted = now;
+      if (values) trame.state.update(values);
+      else document.querySelector('.in-stop').click();
+    } else if (acted && values) {
+      if (next && shown && !first) end(now - acted);
+      next ||= first;
+    } else if (begun && !shown) end(acted && now - acted);
+    if (now - last > 5000) end(0);
+  };
+  const observer = new MutationObserver(look), timer = setInterval(look, 10);
+  observer.observe(status, {subtree: true, childList: true, characterData: true});
+  trame.state.update(begin);
+})"""
+ENDS = {  # a stage: what is said when it was stopped
+    "flatten": "stopped while the surface was flattened",
+    "grid": "before there was a net",
+    "optimise": "stopped by the caller",
+    "report": "converged in",  # there was a net
+}
+
+
+def caught(reader, angles, name, **values):
+    """Milliseconds in which a search was stopped, or changed to values, in the stage of a name.
+
+    A busy machine may show it when it is over: then again."""
+    for _ in range(5):
+        begin = {"kind": "cover", "openings": "fill", "theta": next(angles)}
+        found = reader.page.evaluate(CAUGHT, [begin, STAGES[name], values or None])
+        said = reader.page.locator(".out-problem, .out-message")
+        if found and (values or ENDS[name] in said.first.inner_text()):
+            return found
+    raise AssertionError(f"not stopped while {STAGES[name]}: {said.first.inner_text()}")
+
+
+@pytest.mark.alone
+def test_every_stage_of_a_search_is_shown_and_stops_by_button_and_by_the_next_change(
+    chromium, tmp_path, capsys
+):
+    path = tmp_path / "large roof.ply"
+    surface = examples.wavy_roof(350)
+    io.write(path, *surface)
+    angles, times = iter(range(61, 120)), {}
+    with counting(path, folder=tmp_path) as (address, counts):
+        page = chromium.new_page(viewport={"width": 1000, "height": 640})
+        reader = Reader(page, address, "kind=plane&m=6&n=6&quads=20000&trim=1&theta0=70&target=0")
+        for name in ENDS:
+            changed = caught(reader, angles, name, theta=next(angles))
+            times[STAGES[name]] = caught(reader, angles, name), changed
+        begun = counts()["searches"]
+        assert counts()["at_once"] == 1  # the next one waited for each
+        page.evaluate("trame.state.update({quads: 300, trim: false, theta: 75})")
+        reader.settled()
+        assert reader.angles() == ["75.000000", "70.000000"]
+        assert "converged in" in reader.text(".out-message")
+        judge(reader)
+        page.close()
+    assert begun >= 3 * len(ENDS) and reader.errors == []
+    lines = [f"{words}: {one:.0f} and {two:.0f} ms" for words, (one, two) in times.items()]
+    with capsys.disabled():
+        print(
+            f"\n{len(surface[1])} triangles; over after Stop, and after a change", *lines, sep="\n"
+        )
+    assert max(max(pair) for pair in times.values()) < 5000  # this machine may be busy
+
+
+@pytest.mark.alone
+def test_moves_of_a_slider_during_a_search_do_not_pile_up(chromium, tmp_path, capsys):
+    with counting(folder=tmp_path) as (address, counts):
+        page = chromium.new_page(viewport={"width": 1000, "height": 640})
+        reader = Reader(page, address, "kind=cover&source=saddle&quads=4000&theta=70&target=0")
+        before = counts()
+        slider = page.locator(".in-theta [role=slider]")
+        for _ in range(6):
+            slider.press("ArrowRight")
+            page.locator(".out-progress", has_not_text="preparing").wait_for()  # it runs
+        reader.settled()
+        after = counts()
+        assert reader.choice().theta == 76 and reader.angles()[0] == "76.000000"
+        assert "converged in" in reader.text(".out-message")
+        page.close()
+    assert after["at_once"] == 1 and after["threads"] == before["threads"]
+    assert before["searches"] == 1 and 2 <= after["searches"] <= 7 and reader.errors == []
+    with capsys.disabled():
+        print(f"\n6 moves during a search: {after['searches'] - 1} searches, one at a time")
+
+
+def left(counts):
+    """The counts when closed tabs have ended and been collected, or after ten seconds."""
+    for _ in range(50):
+        found = counts()
+        if found["apps"] <= 1 and not found["workers"]:
+            break
+        time.sleep(0.2)
+    return found
+
+
+@pytest.mark.alone
+def test_tabs_that_are_closed_during_a_search_leave_nothing_behind(chromium, tmp_path, capsys):
+    context, found = chromium.new_context(viewport={"width": 900, "height": 560}), []
+    with counting(folder=tmp_path) as (address, counts):
+        for k in range(16):
+            page = context.new_page()
+            reader = Reader(page, address, "kind=plane&m=100&n=100&families=")
+            page.evaluate("trame.state.set('kind', 'freeform')")
+            for _ in range(6):
+                page.locator(".in-theta [role=slider]").press("ArrowRight")
+            page.locator(".out-progress", has_text="optimising").wait_for()
+            assert k or counts()["workers"] == 1
+            page.close()
+            assert reader.errors == []
+            if k in (9, 15):
+                found.append(left(counts))
+    names = "apps", "workers", "threads", "mb"
+    with capsys.disabled():
+        print("\ntabs with seven changes each, closed during a search")
+        for number, x in zip((10, 16), found, strict=True):
+            print(f"{number} tabs leave", ", ".join(f"{x[name]} {name}" for name in names))
+    few, many = found
+    assert [(x["apps"], x["workers"]) for x in found] == [(1, 0), (1, 0)]  # that of the server
+    assert many["threads"] == few["threads"] and many["mb"] < 1.2 * few["mb"]
+    assert many["searches"] >= 16 and many["at_once"] == 1
+
+
+@pytest.mark.alone
+def test_a_page_does_not_grow_with_its_changes(tab, capsys):
+    reader, found = tab("m=12&n=12&families=u,v,d1,d2&parallelograms=1"), []
+    session = reader.page.context.new_cdp_session(reader.page)
+    session.send("Performance.enable")
+    slider = reader.page.locator(".in-theta [role=slider]")
+    for _ in range(3):
+        for key in ("ArrowRight", "ArrowLeft") * 25:
+            slider.press(key)
+        reader.settled()
+        session.send("HeapProfiler.collectGarbage")
+        metrics = {x["name"]: x["value"] for x in session.send("Performance.getMetrics")["metrics"]}
+        found.append([metrics[k] for k in ("Nodes", "JSEventListeners", "JSHeapUsedSize")])
+    session.detach()
+    with capsys.disabled():
+        print("\na page after 50, 100 and 150 changes: nodes, listeners, MB of JavaScript")
+        for nodes, listeners, size in found:
+            print(f"{nodes:.0f}, {listeners:.0f}, {size / 1e6:.1f}")
+    for first, last in zip(found[0], found[-1], strict=True):
+        assert last < 1.1 * first
