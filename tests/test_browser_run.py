@@ -87,14 +87,14 @@ from inetlib.explorer.app import App
 from inetlib.explorer.session import Session
 from inetlib.start import main
 
-search, under_way, counts = Session.search, set(), {"searches": 0, "at_once": 0}
+find, under_way, counts = Session.find, set(), {"searches": 0, "at_once": 0}
 
 def counted(session, run, *args):
     under_way.add(id(run))
     counts["searches"] += 1
     counts["at_once"] = max(counts["at_once"], len(under_way))
     try:
-        search(session, run, *args)
+        return find(session, run, *args)
     finally:
         under_way.remove(id(run))
 
@@ -107,7 +107,7 @@ def tell(*_):
         counts["mb"] = int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") >> 20
     print(json.dumps(counts), flush=True)
 
-Session.search = counted
+Session.find = counted
 signal.signal(signal.SIGUSR1, tell)
 sys.exit(main(["explore", *sys.argv[1:]]))
 """
