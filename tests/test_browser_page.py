@@ -115,6 +115,12 @@ def test_the_tour_comes_once_is_led_by_keys_and_is_remembered(reader):
         target = page.locator(".ex-tour [data-target]").get_attribute("data-target").split(", ")[0]
         width = page.locator(target).evaluate("e => getComputedStyle(e).outlineWidth")
         assert width == "3px" and page.locator(target).first.is_visible()
+        if k == 4:  # the field is lit without a line through its label
+            style = "e => [getComputedStyle(e).outlineStyle, getComputedStyle(e).borderLeftWidth]"
+            around = page.locator(".in-kind").evaluate(style)[0]
+            own = page.locator(".in-kind .v-field__outline__start").evaluate(style)[1]
+            assert (around, own) == ("none", "3px")
+            assert page.evaluate(CONTRAST)[1] == []
         seen.append(tour.locator("p").inner_text())
         shows = tour.locator("button.v-btn--variant-tonal")
         if k in (2, 3):

@@ -149,6 +149,11 @@ def tour() -> None:
     lit = [f"[data-tour='{k}'] :is({step.target})" for k, step in enumerate(TOUR, 1)]
     ring = "outline: 3px solid #4a86d8; outline-offset: 1px; border-radius: 4px;"
     client.Style(f"{', '.join(lit)} {{ {ring} }}")
+    # A field has a ring of its own, with a gap for its label.
+    client.Style(f"{', '.join(f'{one}.v-select' for one in lit)} {{ outline: none; }}")
+    ring = "--v-field-border-width: 3px; --v-field-border-opacity: 1; color: #4a86d8;"
+    fields = ", ".join(f"{one}.v-select .v-field__outline" for one in lit)
+    client.Style(f"{fields} {{ {ring} }}")
     about = {"raw_attrs": ['role="region"', 'aria-label="tour"', 'tabindex="-1"']}
     with html.Div(v_if=("tour", 0), classes="ex-tour", **about):
         for k, step in enumerate(TOUR, 1):
