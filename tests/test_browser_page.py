@@ -139,6 +139,30 @@ def test_the_tour_comes_once_is_led_by_keys_and_is_remembered(reader):
     tour.wait_for()
     page.keyboard.press("Escape")
     tour.wait_for(state="detached")
+    page.wait_for_function("() => document.activeElement.matches('.ex-view')")
+    reader.settled()
+
+
+def test_on_a_telephone_the_net_and_what_a_step_of_the_tour_is_about_are_in_view(reader):
+    page = reader.page
+    opened(reader, "kind=plane&m=8&n=6", size=(390, 844))
+    page.evaluate("scrollTo(0, 500)")
+    seen = """() => {
+      const inside = (e) => {
+        const r = e.getBoundingClientRect();
+        return e.contains(document.elementFromPoint(r.x + r.width / 2, r.y + r.height / 2));
+      };
+      const part = document.querySelector('.ex-tour [data-target]')?.dataset.target;
+      return part && [...document.querySelectorAll(`${part}, .ex-view, .in-next`)].every(inside);
+    }"""
+    for k in range(1, 6):
+        page.evaluate(f"inet.tour({k})")
+        page.wait_for_function(seen)
+    assert page.locator(".ex-view").bounding_box()["height"] > 180
+    page.evaluate("inet.tour(0)")
+    page.wait_for_function("() => document.activeElement.matches('.ex-view')")
+    reader.settled()
+    assert page.locator(".ex-view").bounding_box()["height"] > 400
 
 
 def test_a_preset_opens_the_net_of_its_picture(reader):

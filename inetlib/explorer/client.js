@@ -92,7 +92,8 @@ window.inet = {
     else delete document.documentElement.dataset.tour;
     requestAnimationFrame(() => {
       const part = document.querySelector(".ex-tour [data-target]")?.dataset.target;
-      if (step) document.querySelector(part)?.scrollIntoView({ block: "nearest" });
+      const parts = step ? [...document.querySelectorAll(part)].reverse() : [];
+      parts.forEach((e) => e.scrollIntoView({ block: "nearest" }));
     });
     setTimeout(() => { // after a dialog that closes, which gives the focus back
       document.querySelector(step ? ".in-next" : ".ex-view")?.focus({ preventScroll: true });

@@ -71,8 +71,9 @@ def _controls(given):
         _select("source", "surface", "kind == 'cover'")
         _select("openings", "hole", "kind == 'cover' && has_one_hole")
         html.H2("Angles")
-        _number("theta", "\u03b8", ends=(1, 179))
-        _number("theta0", "\u03b8\u2080", ends=(1, 179))
+        with html.Div(classes="ex-angles"):
+            _number("theta", "\u03b8", ends=(1, 179))
+            _number("theta0", "\u03b8\u2080", ends=(1, 179))
         words = "lock \u03b8 = \u03b8\u2080 (\u03bb = \u03bc)"
         v3.VSwitch(v_model=("lock",), label=words, classes="in-lock", **SWITCH)
         html.H2("Size")
@@ -223,8 +224,10 @@ def _bar(given):
                     _saved(suffix, missing(suffix))
         if not given:
             widgets.undo(_button)
-            _button("mdi-link-variant", "Copy link", click="utils.get('inet').copyLink(link)")
-            _button("mdi-language-python", "Python", click="code_open = true")
+            _button(
+                "mdi-link-variant", "Copy link", "in-link", click="utils.get('inet').copyLink(link)"
+            )
+            _button("mdi-language-python", "Python", "in-python", click="code_open = true")
         _button("mdi-theme-light-dark", "Light or dark", click="dark = !dark")
         _button("mdi-help-circle-outline", "Help", click="help_open = true")
 

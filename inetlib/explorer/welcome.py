@@ -23,9 +23,10 @@ class Step(NamedTuple):
 TOUR = (
     Step(
         "One parallelogram everywhere",
-        "Join the midpoints of the four sides of a face: you get a parallelogram. In this net all "
-        "of them are similar, the same shape turned and scaled. The panel shows the shape; its "
-        "copies are the darker patches in the net. Point at a face to see its own.",
+        "A net is made of faces with four sides. Join the midpoints of the sides of a face: you "
+        "get a parallelogram. In this net it has the same shape in every face, turned and scaled. "
+        "The panel shows this shape, and the blue patches in the net are its copies. Point at a "
+        "face, or tap it, to see its own.",
         ".out-parallelogram",
     ),
     Step(
@@ -33,31 +34,32 @@ TOUR = (
         "\u03b8 is the angle between two sides of the parallelogram, \u03b8\u2080 that between its "
         "diagonals. Turn \u03b8 by the slider or the button: the net is made anew, and every face "
         "follows.",
-        ".in-theta",
+        ".ex-angles",
         ("Turn \u03b8", "theta = theta < 80 ? 90 : 60"),
     ),
     Step(
         "Four families of curves",
-        "The sides of the faces make two families, u and v; the diagonals of the faces make two "
-        "more. In every face the diagonals cross at the angle \u03b8, and the lines between the "
-        "midpoints of opposite sides at \u03b8\u2080.",
+        "The sides of the faces make two families of curves, u and v; the diagonals of the faces "
+        "make two more, d\u2081 and d\u2082. The sides of the parallelogram are parallel to the "
+        "diagonals of its face: these cross at \u03b8. Its own diagonals join the midpoints of "
+        "opposite sides of the face, and cross at \u03b8\u2080.",
         ".ex-families",
         ("Show all four", "families = ['u', 'v', 'd1', 'd2']"),
     ),
     Step(
         "Exact or optimised",
-        "Some nets follow from a formula and are exact, others come close to it and come closer "
-        "with smaller faces. On any other surface, also on one of your own, the net is searched "
-        "for step by step. The line below the net says which it is.",
+        "Some nets follow from a formula: their angles are exact, or nearly so, and nearer with "
+        "smaller faces. On any other surface, also on your own, the net is searched for step by "
+        "step. The line below the net says which it is.",
         ".ex-foot, .in-kind",
         ("Search for one", "kind = 'freeform'"),
     ),
     Step(
         "Keep what you find",
-        "Save writes a drawing, or a mesh for other programs. Copy link keeps the choice and the "
-        "view, and Python shows three lines that make the same net. Presets has more nets to begin "
-        "with; Help has this tour.",
-        ".v-app-bar .in-save, .in-presets",
+        "In the bar: Save writes a drawing, or a mesh for other programs. Copy link keeps the "
+        "choice and the view, and Python shows three lines that make the same net. Presets has "
+        "more nets to begin with; Help has this tour.",
+        ".in-save, .in-link, .in-python, .in-presets",
     ),
 )
 
@@ -147,7 +149,7 @@ HELP = {
 def tour() -> None:
     """The tour, below the net: one step at a time, with the part of the page that it is about."""
     lit = [f"[data-tour='{k}'] :is({step.target})" for k, step in enumerate(TOUR, 1)]
-    ring = "outline: 3px solid #4a86d8; outline-offset: 1px; border-radius: 4px;"
+    ring = "outline: 3px solid #4a86d8; border-radius: 4px;"
     client.Style(f"{', '.join(lit)} {{ {ring} }}")
     # A field has a ring of its own, with a gap for its label.
     client.Style(f"{', '.join(f'{one}.v-select' for one in lit)} {{ outline: none; }}")
