@@ -207,7 +207,7 @@ def test_a_net_is_kept_as_a_ghost_with_its_numbers_until_it_is_removed(reader):
 
 
 def test_the_surface_is_seen_below_a_cover_unless_it_is_switched_off(reader):
-    go(reader, kind="cover", quads=60)
+    go(reader, kind="cover", quads=60, trim=0)
     seen = [reader.picture()]
     assert re.fullmatch(r"[\d.]+ %", reader.text(".out-covered"))
     assert reader.text(".out-distance").endswith(" %")
