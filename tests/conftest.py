@@ -20,7 +20,7 @@ settings.load_profile("still")
 
 LONGEST = ["notebooks", "elsewhere", "stopping", "exercises", "design"]
 LONGEST += ["drawings", "explorer_serve", "course", "loxodrome", "io", "properties"]
-LONGEST += ["publish", "explorer", "fuzz", "view"]
+LONGEST += ["publish", "explorer", "fuzz", "view", "browser_run"]
 
 
 def pytest_addoption(parser):
@@ -48,6 +48,13 @@ def pytest_collection_modifyitems(config, items):
             marked = [item for item in items if item.get_closest_marker(name)]
             config.hook.pytest_deselected(items=marked)
             items[:] = [item for item in items if item not in marked]
+
+
+def pytest_terminal_summary(terminalreporter):
+    """What tests have counted (`record_property`): it comes from other processes, too."""
+    for report in terminalreporter.getreports("passed"):
+        for name, words in report.user_properties if report.when == "call" else ():
+            terminalreporter.write_line(f"{name}: {words}")
 
 
 @pytest.fixture(scope="module")

@@ -213,8 +213,7 @@ def test_every_stage_of_a_search_is_shown_and_stops_by_button_and_by_the_next_ch
     assert max(max(pair) for pair in times.values()) < 5000  # this machine may be busy
 
 
-@pytest.mark.alone
-def test_moves_of_a_slider_during_a_search_do_not_pile_up(chromium, tmp_path, capsys):
+def test_moves_of_a_slider_during_a_search_do_not_pile_up(chromium, tmp_path, record_property):
     with counting(folder=tmp_path) as (address, counts):
         page = chromium.new_page(viewport={"width": 1000, "height": 640})
         reader = Reader(page, address, "kind=cover&source=saddle&quads=4000&theta=70&target=0")
@@ -230,8 +229,7 @@ def test_moves_of_a_slider_during_a_search_do_not_pile_up(chromium, tmp_path, ca
         page.close()
     assert after["at_once"] == 1 and after["threads"] == before["threads"]
     assert before["searches"] == 1 and 2 <= after["searches"] <= 7 and reader.errors == []
-    with capsys.disabled():
-        print(f"\n6 moves during a search: {after['searches'] - 1} searches, one at a time")
+    record_property("6 moves during a search", f"{after['searches'] - 1} searches, one at a time")
 
 
 def left(counts):
@@ -244,8 +242,9 @@ def left(counts):
     return found
 
 
-@pytest.mark.alone
-def test_tabs_that_are_closed_during_a_search_leave_nothing_behind(chromium, tmp_path, capsys):
+def test_tabs_that_are_closed_during_a_search_leave_nothing_behind(
+    chromium, tmp_path, record_property
+):
     context, found = chromium.new_context(viewport={"width": 900, "height": 560}), []
     with counting(folder=tmp_path) as (address, counts):
         for k in range(16):
@@ -260,19 +259,16 @@ def test_tabs_that_are_closed_during_a_search_leave_nothing_behind(chromium, tmp
             assert reader.errors == []
             if k in (9, 15):
                 found.append(left(counts))
-    names = "apps", "workers", "threads", "mb"
-    with capsys.disabled():
-        print("\ntabs with seven changes each, closed during a search")
-        for number, x in zip((10, 16), found, strict=True):
-            print(f"{number} tabs leave", ", ".join(f"{x[name]} {name}" for name in names))
+    for number, x in zip((10, 16), found, strict=True):
+        counted = ", ".join(f"{x[name]} {name}" for name in ("apps", "workers", "threads", "mb"))
+        record_property(f"{number} tabs with 7 changes each, closed during a search", counted)
     few, many = found
     assert [(x["apps"], x["workers"]) for x in found] == [(1, 0), (1, 0)]  # that of the server
     assert many["threads"] == few["threads"] and many["mb"] < 1.2 * few["mb"]
     assert many["searches"] >= 16 and many["at_once"] == 1
 
 
-@pytest.mark.alone
-def test_a_page_does_not_grow_with_its_changes(tab, capsys):
+def test_a_page_does_not_grow_with_its_changes(tab, record_property):
     reader, found = tab("m=12&n=12&families=u,v,d1,d2&parallelograms=1"), []
     session = reader.page.context.new_cdp_session(reader.page)
     session.send("Performance.enable")
@@ -285,9 +281,8 @@ def test_a_page_does_not_grow_with_its_changes(tab, capsys):
         metrics = {x["name"]: x["value"] for x in session.send("Performance.getMetrics")["metrics"]}
         found.append([metrics[k] for k in ("Nodes", "JSEventListeners", "JSHeapUsedSize")])
     session.detach()
-    with capsys.disabled():
-        print("\na page after 50, 100 and 150 changes: nodes, listeners, MB of JavaScript")
-        for nodes, listeners, size in found:
-            print(f"{nodes:.0f}, {listeners:.0f}, {size / 1e6:.1f}")
+    for number, (nodes, listeners, size) in zip((50, 100, 150), found, strict=True):
+        counted = f"{nodes:.0f} nodes, {listeners:.0f} listeners, {size / 1e6:.1f} MB of JavaScript"
+        record_property(f"a page after {number} changes", counted)
     for first, last in zip(found[0], found[-1], strict=True):
         assert last < 1.1 * first
