@@ -63,7 +63,7 @@ def test_a_file_of_the_command_line_is_covered_and_sigint_ends_everything(chromi
     process, address = start(path, folder=tmp_path, environment=os.environ.copy())
     try:
         page = chromium.new_page()
-        reader = Reader(page, address, "quads=120&theta=70&theta0=60&kind=cover&source=file&trim=0")
+        reader = Reader(page, address, "quads=120&theta=70&theta0=60&kind=cover&source=file")
         assert "converged in" in reader.text(".out-message")
         assert page.title().startswith("my roof 70 60")
         assert page.locator(".in-source", has_text="my roof.obj").is_visible()
