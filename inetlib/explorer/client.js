@@ -97,7 +97,7 @@ window.inet = {
     });
     setTimeout(() => { // after a dialog that closes, which gives the focus back
       document.querySelector(step ? ".in-next" : ".ex-view")?.focus({ preventScroll: true });
-      if (this.loads < 9) window.trame.trigger("refit", [this.place()]); // the view has another size
+      if (this.loads < 9) this.refit(); // the view has another size
     }, 300);
   },
   welcome() {
@@ -105,12 +105,15 @@ window.inet = {
     try { seen ||= window.localStorage.getItem("inet-tour"); } catch { seen = true; }
     if (!seen) this.tour(1);
   },
+  refit() {
+    window.trame.trigger("refit", [this.place()]).catch(() => {}); // the page is going: nobody waits
+  },
   loads: 0,
   loaded() {
     // A camera that came before the first scene was there is lost; from 9 on it is the reader's.
     this.loads += 1;
     if (this.loads === 1) this.welcome();
-    if (this.loads <= 3) window.trame.trigger("refit", [this.place()]);
+    if (this.loads <= 3) this.refit();
     this.rest();
   },
   // At rest the view is drawn with two pixels or more for one of the screen, and shrunk: smooth
