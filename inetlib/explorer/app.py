@@ -214,8 +214,11 @@ class App:
 
         made = await loop.run_in_executor(self._worker, self.session.find, run, seen, told)
         if self.session.take(run, made):
-            with self.state:
+            with self.state:  # at once: to draw takes time
                 self.state.searching = False
+                self._say()
+            await asyncio.sleep(SENT)
+            with self.state:
                 self._show()
 
     def _tell(self, run, words):
@@ -224,7 +227,7 @@ class App:
                 self.state.progress = f"{words} \u2026"
 
     def _frame(self, run, V, Q, steps):
-        if self.session.on_the_way(run, V, Q):
+        if not run.stopped and self.session.on_the_way(run, V, Q):
             with self.state:
                 self.state.progress = f"optimising, step {steps}" if steps else BEGUN
                 self._show()
