@@ -59,8 +59,8 @@ test-long: $(READY)
 
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py
-	$(BIN)/python -m pytest -m "browser and not alone" -rs -n auto --dist loadfile --no-loadscope-reorder
-	$(BIN)/python -m pytest -m "browser and alone" -rs
+	$(BIN)/python -m pytest tests/test_browser*.py -m "browser and not alone" -rs -n auto --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest tests/test_browser*.py -m "browser and alone" -rs
 
 test-book: book
 	$(BIN)/python tools/browser.py

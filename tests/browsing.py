@@ -38,13 +38,14 @@ def start(*words, folder, environment, program=("-m", "inetlib.explorer")):
     return process, found[1]
 
 
-STILL = """async () => {  // the server answers in order
+STILL = """async () => {  // the server answers in order; returns whether it searches
   const frame = () => new Promise(requestAnimationFrame);
-  for (let k = 0; k < 3; k += 1) {
+  for (let k = 0; k < 4; k += 1) {
     await frame();
     await trame.client.getRemote().Trame.lifeCycleUpdate('client_still');
   }
   await frame();
+  return trame.state.get('searching');
 }"""
 
 
@@ -72,11 +73,8 @@ class Reader:
 
     def settled(self):
         """Wait until the server has done what it was asked for, and the view shows it."""
-        self.page.evaluate(STILL)
-        self.page.wait_for_function(
-            "() => !trame.state.get('searching') && !trame.state.get('trame__busy')"
-        )
-        self.page.evaluate(STILL)
+        while self.page.evaluate(STILL):
+            self.page.wait_for_function("() => !trame.state.get('searching')")
 
     def text(self, name):
         return self.page.inner_text(name).strip()
