@@ -38,14 +38,22 @@ def start(*words, folder, environment, program=("-m", "inetlib.explorer")):
     return process, found[1]
 
 
-STILL = """async () => {  // the server answers in order; returns whether it searches
+STILL = """async () => {  // the server answers in order, and changes wait for one another
   const frame = () => new Promise(requestAnimationFrame);
-  for (let k = 0; k < 4; k += 1) {
+  const answers = async (count) => {
+    for (let k = 0; k < count; k += 1) {
+      await frame();
+      await trame.client.getRemote().Trame.lifeCycleUpdate('client_still');
+    }
     await frame();
-    await trame.client.getRemote().Trame.lifeCycleUpdate('client_still');
+  };
+  const end = performance.now() + 30000;
+  await answers(2);
+  while (trame.state.get('searching') || trame.state.get('trame__busy')) {
+    if (performance.now() > end) throw new Error('it goes on and on');
+    await frame();
   }
-  await frame();
-  return trame.state.get('searching');
+  await answers(3);
 }"""
 
 
@@ -73,8 +81,7 @@ class Reader:
 
     def settled(self):
         """Wait until the server has done what it was asked for, and the view shows it."""
-        while self.page.evaluate(STILL):
-            self.page.wait_for_function("() => !trame.state.get('searching')")
+        self.page.evaluate(STILL)
 
     def text(self, name):
         return self.page.inner_text(name).strip()
