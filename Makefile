@@ -59,7 +59,7 @@ test-long: $(READY)
 
 test-browser: $(READY)
 	$(BIN)/python tools/browser.py
-	$(BIN)/python -m pytest tests/test_browser*.py -m "browser and not alone" -rs -n auto --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest tests/test_browser_run.py tests/test_browser*.py -m "browser and not alone" -rs -n auto --dist loadfile --no-loadscope-reorder
 	$(BIN)/python -m pytest tests/test_browser*.py -m "browser and alone" -rs
 
 test-book: book
